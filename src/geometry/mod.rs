@@ -1,0 +1,1 @@
+//! Shapes, meshes and the nearest hit.

@@ -1,0 +1,1 @@
+//! EXR, PNG, false colour, drawing.

@@ -1,0 +1,3 @@
+//! The `caustix` command.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Photometric files: reading, symmetry, flux, summary.

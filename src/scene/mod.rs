@@ -1,0 +1,1 @@
+//! Scenes: what is read from a scene file, checked once.

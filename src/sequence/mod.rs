@@ -1,0 +1,1 @@
+//! Point sequences: pure functions of (index, coordinate, seed, replicate).

@@ -1,0 +1,1 @@
+//! Order-free exact sums of hits.

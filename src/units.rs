@@ -1,0 +1,13 @@
+//! Units and the few constants that photometry fixes.
+//!
+//! Inside caustix lengths are metres, angles radians, flux lumens, intensity candela, illuminance lux. Degrees and
+//! feet exist only where files are read (names end in `_deg`, `_ft`).
+
+/// Luminous efficacy of monochromatic radiation of 540 THz, lm/W (SI definition of the candela, 2019).
+pub const K_CD_LM_W: f64 = 683.0;
+
+/// The international foot in metres (exact).
+pub const METRES_PER_FOOT: f64 = 0.3048;
+
+/// Radians per degree.
+pub const RADIANS_PER_DEGREE: f64 = std::f64::consts::PI / 180.0;
