@@ -13,6 +13,7 @@ pub mod scene;
 pub mod transport;
 pub mod tally;
 pub mod estimate;
+pub mod run;
 pub mod image;
 pub mod report;
 pub mod cli;

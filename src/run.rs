@@ -1,0 +1,1 @@
+//! A whole run: settings in, maps and ledger out.
