@@ -1,1 +1,5 @@
-//! Small numerical tools: frames, solvers.
+//! Small numerical tools: frames, solvers, elementary functions that are the same on every machine.
+
+pub mod frame;
+pub mod solve;
+pub mod trig;

@@ -1,0 +1,187 @@
+//! Discrete events on one coordinate, and the renormalisation of what is left of it (METHOD 2, paper eq. 5).
+//!
+//! Everything works on 64-bit fractions: event k owns the integers [T_k, T_k + w_k), and u' = (u - T_k) / w_k is again
+//! a 64-bit fraction, below 1 by construction because u - T_k < w_k. An event of probability zero owns no integer and
+//! is never chosen.
+
+/// A coordinate that serves several discrete events in turn, and the record of how much of it is used up.
+#[derive(Debug, Clone, Copy)]
+pub struct Reusable {
+    bits: u64,
+    /// Product of the probabilities of the events chosen so far; -log2 of it is the number of bits spent.
+    span: f64,
+}
+
+/// Of its 64 bits a coordinate must keep at least 24 for the next use: a span of 2^-40.
+const SMALLEST_SPAN: f64 = 1.0 / (1u64 << 40) as f64;
+
+impl Reusable {
+    /// A coordinate of which nothing is used.
+    #[inline]
+    pub fn fresh(bits: u64) -> Self {
+        Self { bits, span: 1.0 }
+    }
+
+    /// What is left, as a 64-bit fraction.
+    #[inline]
+    pub fn bits(&self) -> u64 {
+        self.bits
+    }
+
+    /// Whether fewer than 24 of the 64 bits remain, so that the next use needs a fresh coordinate.
+    #[inline]
+    pub fn is_spent(&self) -> bool {
+        self.span < SMALLEST_SPAN
+    }
+
+    /// Marks the coordinate as used up: what a photon without renormalisation does after every choice.
+    #[inline]
+    pub fn spend(&mut self) {
+        self.span = 0.0;
+    }
+
+    /// Replaces the fraction after an event of this probability was chosen by other means (a table).
+    #[inline]
+    pub fn renormalised(&mut self, bits: u64, probability: f64) {
+        self.bits = bits;
+        self.span *= probability;
+    }
+
+    /// Whether the event of this probability happens, 0 < probability < 1; renormalises the coordinate.
+    #[inline]
+    pub fn happens(&mut self, probability: f64) -> bool {
+        let threshold = ((probability * TWO_TO_64) as u64).max(1);
+        if self.bits < threshold {
+            self.renormalised(divide(self.bits, threshold), probability);
+            true
+        } else {
+            // 2^64 - threshold, which fits because the threshold is at least 1.
+            let width = threshold.wrapping_neg();
+            self.renormalised(divide(self.bits - threshold, width), 1.0 - probability);
+            false
+        }
+    }
+}
+
+const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
+
+/// d / width as a 64-bit fraction, d < width.
+#[inline]
+fn divide(d: u64, width: u64) -> u64 {
+    ((u128::from(d) << 64) / u128::from(width)) as u64
+}
+
+/// Widths of events on the 64-bit integers, in proportion to weights; they sum to 2^64 exactly.
+///
+/// Each width is right to 53 bits of itself (not of the total), so rare events keep their ratio; the rounding error of
+/// the sum goes to the largest. Weights are any non-negative finite numbers; a weight of zero gives width 0. With one
+/// positive weight its width would be 2^64, which does not fit: `None`, as for no positive weight.
+pub fn integer_widths(weights: &[f64]) -> Option<Vec<u64>> {
+    let largest = weights.iter().copied().fold(0.0, f64::max);
+    let valid = weights.iter().all(|w| *w >= 0.0 && w.is_finite());
+    if !valid || weights.iter().filter(|w| **w > 0.0).count() < 2 {
+        return None;
+    }
+    let total: f64 = weights.iter().map(|w| w / largest).sum();
+    // A width of 2^64 itself can come out when all other weights vanish beside one: held one below, then corrected.
+    let mut widths: Vec<u64> = weights.iter().map(|w| (w / largest / total * TWO_TO_64) as u64).collect();
+    let sum: u128 = widths.iter().map(|w| u128::from(*w)).sum();
+    let at = weights.iter().position(|w| *w == largest)?;
+    let corrected = i128::from(widths[at]) + ((1i128 << 64) - sum as i128);
+    widths[at] = u64::try_from(corrected).unwrap_or(u64::MAX);
+    if corrected > i128::from(u64::MAX) {
+        // Every other width rounded to zero: the largest of them gets the one integer that is left.
+        let second =
+            (0..weights.len()).filter(|k| *k != at).max_by(|a, b| weights[*a].total_cmp(&weights[*b]))?;
+        widths[second] = 1;
+    }
+    Some(widths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sequence::Points;
+    use crate::sequence::owen::OwenPoints;
+
+    #[test]
+    fn renormalised_fraction_is_uniform_again_and_below_one() {
+        for probability in [0.5, 0.04, 1e-12, 1.0 - 1e-12, f64::EPSILON, 1.0 - f64::EPSILON / 2.0] {
+            for bits in [0, 1, 1 << 20, 1 << 63, u64::MAX - 1, u64::MAX] {
+                let mut u = Reusable::fresh(bits);
+                let happened = u.happens(probability);
+                // The exact quotient in 128 bits, by the definition.
+                let t = (probability * TWO_TO_64) as u64;
+                let (d, w) = if happened {
+                    (u128::from(bits), u128::from(t))
+                } else {
+                    (u128::from(bits - t), (1u128 << 64) - u128::from(t))
+                };
+                assert_eq!(happened, bits < t);
+                assert_eq!(u128::from(u.bits()), (d << 64) / w);
+            }
+        }
+    }
+
+    #[test]
+    fn extremes_land_where_they_must() {
+        let mut low = Reusable::fresh(0);
+        assert!(low.happens(1e-300), "u = 0 always happens");
+        let mut high = Reusable::fresh(u64::MAX);
+        assert!(!high.happens(1.0 - f64::EPSILON / 2.0), "u = 1 - 2^-64 never does");
+        assert_eq!(high.bits(), u64::MAX - ((1 << 53) - 1), "and is the last of the 2^11 that do not");
+    }
+
+    #[test]
+    fn bits_spent_are_tracked_to_the_24_bit_rule() {
+        let mut u = Reusable::fresh(u64::MAX / 3);
+        let mut spent = 0.0;
+        while !u.is_spent() {
+            let probability = 0.3;
+            spent -= if u.happens(probability) { 0.3f64.log2() } else { 0.7f64.log2() };
+        }
+        assert!(spent > 40.0 && spent < 42.0, "{spent}");
+        u.spend();
+        assert!(u.is_spent());
+    }
+
+    #[test]
+    fn widths_sum_to_two_to_64_and_keep_ratios_of_1e12() {
+        let weights = [1.0, 0.0, 1e-12, 3e-12, 0.7, 0.0];
+        let widths = integer_widths(&weights).unwrap();
+        assert_eq!(widths.iter().map(|w| u128::from(*w)).sum::<u128>(), 1 << 64);
+        assert_eq!((widths[1], widths[5]), (0, 0));
+        assert!((widths[3] as f64 / widths[2] as f64 - 3.0).abs() < 1e-6);
+        for scale in [1e-300, 1e300] {
+            let scaled: Vec<f64> = weights.iter().map(|w| w * scale).collect();
+            let again = integer_widths(&scaled).unwrap();
+            assert!(again.iter().zip(&widths).all(|(a, b)| a.abs_diff(*b) <= 1 << 13));
+        }
+    }
+
+    #[test]
+    fn widths_of_degenerate_weights() {
+        assert!(integer_widths(&[]).is_none());
+        assert!(integer_widths(&[0.0, 2.0]).is_none());
+        assert!(integer_widths(&[1.0, f64::NAN]).is_none());
+        assert!(integer_widths(&[1.0, -1.0]).is_none());
+        let lost = integer_widths(&[1.0, 1e-300, 0.0]).unwrap();
+        assert_eq!(lost, [u64::MAX, 1, 0]);
+    }
+
+    #[test]
+    fn renormalised_net_keeps_its_strata_inside_the_event() {
+        // 2^14 points, an event of probability 1/4: the 2^12 points inside are again a net in (u', v): every box of
+        // 2^-6 x 2^-6 holds exactly one.
+        let points = OwenPoints::new(3, 0);
+        let mut count = vec![0; 1 << 12];
+        for i in 0..1 << 14 {
+            let mut u = Reusable::fresh(points.coordinate(i, 0));
+            if u.happens(0.25) {
+                let cell = ((u.bits() >> 58) << 6) | (points.coordinate(i, 1) >> 58);
+                count[cell as usize] += 1;
+            }
+        }
+        assert!(count.iter().all(|&c| c == 1));
+    }
+}

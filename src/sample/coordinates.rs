@@ -1,0 +1,210 @@
+//! A photon's coordinates: handed out in order of use, labelled, counted.
+//!
+//! The number of coordinates a photon consumes is its constructive dimension (METHOD 1). A coordinate is counted when it
+//! is drawn; an event with one possible outcome draws none. With renormalisation all discrete events of a photon
+//! share one coordinate until fewer than 24 of its 64 bits are left; without, each draws its own.
+
+use super::choose::Reusable;
+use super::discrete::Discrete;
+use crate::sequence::{Points, to_unit_f64};
+
+/// What a coordinate was drawn for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Which emitter and which table cell; what is left places the photon inside the cell along theta.
+    Emission,
+    /// The first continuous coordinate of an emission, where the one above could not serve.
+    EmissionTheta,
+    /// The second continuous coordinate of an emission.
+    EmissionPhi,
+    /// The place within a beam's cross-section.
+    BeamPosition,
+    /// A discrete event at a surface.
+    Event,
+    /// A scattered direction.
+    Scatter,
+}
+
+impl Purpose {
+    /// Every purpose, in the order of the counters.
+    pub const ALL: [Self; 6] = [
+        Self::Emission,
+        Self::EmissionTheta,
+        Self::EmissionPhi,
+        Self::BeamPosition,
+        Self::Event,
+        Self::Scatter,
+    ];
+
+    /// The label in reports.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Emission => "emission",
+            Self::EmissionTheta => "emission theta",
+            Self::EmissionPhi => "emission phi",
+            Self::BeamPosition => "beam position",
+            Self::Event => "event",
+            Self::Scatter => "scatter",
+        }
+    }
+}
+
+/// What makes the decisions of a walk: a photon's coordinates, or a script.
+pub trait Chooser {
+    /// Whether an event of this probability happens. Probabilities at or beyond 0 and 1 decide themselves and cost
+    /// nothing.
+    fn happens(&mut self, probability: f64) -> bool;
+    /// A continuous coordinate in [0, 1).
+    fn uniform(&mut self, purpose: Purpose) -> f64;
+}
+
+/// The coordinates of one photon.
+#[derive(Debug)]
+pub struct Coordinates<'p, P> {
+    points: &'p P,
+    index: u64,
+    reuse: bool,
+    event: Option<Reusable>,
+    drawn: u32,
+    drawn_for: [u32; Purpose::ALL.len()],
+}
+
+impl<'p, P: Points> Coordinates<'p, P> {
+    /// The coordinates of photon `index`; `reuse` turns renormalisation on.
+    #[inline]
+    pub fn new(points: &'p P, index: u64, reuse: bool) -> Self {
+        Self { points, index, reuse, event: None, drawn: 0, drawn_for: [0; Purpose::ALL.len()] }
+    }
+
+    /// Coordinates consumed so far.
+    #[inline]
+    pub fn drawn(&self) -> u32 {
+        self.drawn
+    }
+
+    /// Coordinates consumed so far for each purpose, in the order of [`Purpose::ALL`].
+    #[inline]
+    pub fn drawn_for(&self) -> &[u32; Purpose::ALL.len()] {
+        &self.drawn_for
+    }
+
+    /// The next coordinate.
+    #[inline]
+    pub fn draw(&mut self, purpose: Purpose) -> u64 {
+        let bits = self.points.coordinate(self.index, self.drawn);
+        self.drawn += 1;
+        self.drawn_for[purpose as usize] += 1;
+        bits
+    }
+
+    /// The next coordinate, to be used for discrete events first.
+    #[inline]
+    pub fn draw_reusable(&mut self, purpose: Purpose) -> Reusable {
+        Reusable::fresh(self.draw(purpose))
+    }
+
+    /// An event of `table` on `u`; a spent coordinate is replaced first.
+    #[inline]
+    pub fn choose(&mut self, table: &Discrete, u: &mut Reusable, purpose: Purpose) -> usize {
+        if table.is_single() {
+            return table.choose(u).0;
+        }
+        if u.is_spent() {
+            *u = self.draw_reusable(purpose);
+        }
+        let (event, _) = table.choose(u);
+        if !self.reuse {
+            u.spend();
+        }
+        event
+    }
+
+    /// What is left of `u` as a continuous coordinate; a fresh one where fewer than 24 bits are.
+    #[inline]
+    pub fn remainder(&mut self, u: Reusable, purpose: Purpose) -> f64 {
+        to_unit_f64(if u.is_spent() { self.draw(purpose) } else { u.bits() })
+    }
+}
+
+impl<P: Points> Chooser for Coordinates<'_, P> {
+    #[inline]
+    fn happens(&mut self, probability: f64) -> bool {
+        if probability <= 0.0 {
+            return false;
+        }
+        if probability >= 1.0 {
+            return true;
+        }
+        let mut u = match self.event {
+            Some(u) if !u.is_spent() => u,
+            _ => self.draw_reusable(Purpose::Event),
+        };
+        let happened = u.happens(probability);
+        self.event = self.reuse.then_some(u);
+        happened
+    }
+
+    #[inline]
+    fn uniform(&mut self, purpose: Purpose) -> f64 {
+        to_unit_f64(self.draw(purpose))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sequence::independent::IndependentPoints;
+
+    #[test]
+    fn events_share_one_coordinate_with_reuse_and_draw_their_own_without() {
+        let points = IndependentPoints::new(1, 0);
+        let mut with = Coordinates::new(&points, 5, true);
+        let mut without = Coordinates::new(&points, 5, false);
+        for _ in 0..10 {
+            with.happens(0.9);
+            without.happens(0.9);
+        }
+        assert_eq!((with.drawn(), without.drawn()), (1, 10));
+        assert_eq!(with.drawn_for()[Purpose::Event as usize], 1);
+    }
+
+    #[test]
+    fn certain_events_draw_nothing() {
+        let points = IndependentPoints::new(1, 0);
+        let mut c = Coordinates::new(&points, 0, true);
+        assert!(c.happens(1.0) && !c.happens(0.0) && c.happens(1.5) && !c.happens(-0.1));
+        assert_eq!(c.drawn(), 0);
+    }
+
+    #[test]
+    fn a_spent_coordinate_is_replaced_before_fewer_than_24_bits_are_used() {
+        let points = IndependentPoints::new(2, 0);
+        let mut c = Coordinates::new(&points, 9, true);
+        // Each fair event costs one bit: events 1 to 41 run on the first coordinate (after 40 just 24 bits remain,
+        // which is still allowed), the 42nd draws the second.
+        for event in 1..=41 {
+            c.happens(0.5);
+            assert_eq!(c.drawn(), 1, "event {event}");
+        }
+        c.happens(0.5);
+        assert_eq!(c.drawn(), 2);
+    }
+
+    #[test]
+    fn event_frequency_survives_forty_renormalisations() {
+        // The 30th event on the same coordinate still has its probability: z-test over photons.
+        let points = IndependentPoints::new(4, 0);
+        let n = 200_000;
+        let mut count = 0.0;
+        for i in 0..n {
+            let mut c = Coordinates::new(&points, i, true);
+            for _ in 0..29 {
+                c.happens(0.6);
+            }
+            count += f64::from(u8::from(c.happens(0.3)));
+            assert!(c.drawn() <= 2);
+        }
+        let z = (count - 0.3 * n as f64) / (n as f64 * 0.21).sqrt();
+        assert!(z.abs() < 4.0, "{z}");
+    }
+}
