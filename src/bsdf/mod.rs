@@ -1,1 +1,152 @@
 //! What a surface does with a photon.
+//!
+//! Contract of every model. A photon arrives along `direction` (unit, pointing the way it travels) on the side that the
+//! normals of [`Incidence`] look to; the model decides by the chooser whether it is absorbed and, if not, where it
+//! goes: away from the surface on the side of arrival, or `through` it. A photon carries flux, so the chance of going on
+//! is the albedo and no weight, cosine or eta^2 factor is left over. Coordinates are drawn only where there is more
+//! than one outcome.
+//!
+//! To add a model: a file beside these, a line in [`Bsdf`] and an arm in [`Bsdf::interact`]; the scene file's name for it
+//! is given in `scene`.
+
+pub mod dielectric;
+pub mod lambertian;
+pub mod mirror;
+
+use glam::DVec3;
+
+use crate::sample::coordinates::Chooser;
+
+pub use dielectric::Dielectric;
+
+/// A photon at a surface.
+#[derive(Debug, Clone, Copy)]
+pub struct Incidence {
+    /// Where the photon is heading; unit.
+    pub direction: DVec3,
+    /// Normal of the facet, unit, on the side of arrival: direction . facet < 0.
+    pub facet: DVec3,
+    /// Smooth normal, unit, on the same side of the surface as the outward normal that `facet` is plus or minus.
+    pub smooth: DVec3,
+    /// Whether the side of arrival is the one the outward normal points to.
+    pub front: bool,
+}
+
+/// What became of the photon.
+#[derive(Debug, Clone, Copy)]
+pub enum Outcome {
+    /// It ends here.
+    Absorbed,
+    /// It goes on.
+    Leaves {
+        /// Where to; unit.
+        direction: DVec3,
+        /// Whether it crossed to the other side.
+        through: bool,
+        /// Whether a smooth normal made an exception necessary (METHOD 1): the photon arrived behind the smooth normal,
+        /// or was sent to the wrong side of the facet and mirrored back.
+        corrected: bool,
+    },
+}
+
+/// Everything a surface can be made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bsdf {
+    /// A smooth interface between two transparent media.
+    Dielectric(Dielectric),
+    /// A mirror of this reflectance at every angle.
+    Mirror {
+        /// Part of the flux that is reflected, 0 to 1.
+        reflectance: f64,
+    },
+    /// Perfectly diffuse on the side of arrival.
+    Lambertian {
+        /// Part of the flux that is reflected, 0 to 1.
+        reflectance: f64,
+    },
+    /// Ends every photon.
+    Absorber,
+}
+
+impl Bsdf {
+    /// Decides what happens to a photon that arrived.
+    #[inline]
+    pub fn interact<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Outcome {
+        match self {
+            Self::Dielectric(dielectric) => dielectric.interact(at, chooser),
+            Self::Mirror { reflectance } => mirror::interact(*reflectance, at, chooser),
+            Self::Lambertian { reflectance } => lambertian::interact(*reflectance, at, chooser),
+            Self::Absorber => Outcome::Absorbed,
+        }
+    }
+
+    /// Whether photons pass through.
+    pub fn is_transparent(&self) -> bool {
+        matches!(self, Self::Dielectric(_))
+    }
+}
+
+/// The smooth normal where the photon arrives in front of it, else the facet's; true in the second case.
+#[inline]
+fn working_normal(at: &Incidence) -> (DVec3, bool) {
+    if at.direction.dot(at.smooth) < 0.0 { (at.smooth, false) } else { (at.facet, true) }
+}
+
+/// A direction that left on the wrong side of the facet, mirrored in the facet's plane (METHOD 1); `towards` is the
+/// facet normal on the side where the photon must be. True where it was mirrored.
+#[inline]
+fn keep_side(direction: DVec3, towards: DVec3) -> (DVec3, bool) {
+    let along = direction.dot(towards);
+    if along < 0.0 { (direction - 2.0 * along * towards, true) } else { (direction, false) }
+}
+
+#[cfg(test)]
+pub(crate) mod script {
+    //! A chooser that follows a script: for tests of single events.
+    use crate::sample::coordinates::{Chooser, Purpose};
+
+    /// Events and uniforms in order; panics when it runs out, so a test also counts what is asked for.
+    #[derive(Debug, Default)]
+    pub struct Script {
+        pub events: Vec<bool>,
+        pub uniforms: Vec<f64>,
+        pub asked: Vec<f64>,
+    }
+
+    impl Chooser for Script {
+        fn happens(&mut self, probability: f64) -> bool {
+            if probability <= 0.0 || probability >= 1.0 {
+                return probability >= 1.0;
+            }
+            self.asked.push(probability);
+            self.events.remove(0)
+        }
+
+        fn uniform(&mut self, _: Purpose) -> f64 {
+            self.uniforms.remove(0)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrong_side_is_mirrored_in_the_facet() {
+        let d = DVec3::new(0.6, 0.0, -0.8);
+        assert_eq!(keep_side(d, DVec3::Z), (DVec3::new(0.6, 0.0, 0.8), true));
+        assert_eq!(keep_side(d, -DVec3::Z), (d, false));
+    }
+
+    #[test]
+    fn photon_behind_the_smooth_normal_uses_the_facet() {
+        let at = Incidence {
+            direction: DVec3::new(0.8, 0.0, -0.6),
+            facet: DVec3::Z,
+            smooth: DVec3::new(0.8, 0.0, 0.6),
+            front: true,
+        };
+        assert_eq!(working_normal(&at), (DVec3::Z, true));
+    }
+}

@@ -1,0 +1,45 @@
+//! A mirror: a fixed part of the flux is reflected at every angle, the rest is absorbed.
+//!
+//! Scene text: `type = "mirror"`, `reflectance` 0 to 1 (default 1).
+
+use super::{Incidence, Outcome, keep_side, working_normal};
+use crate::sample::coordinates::Chooser;
+
+/// Reflects about the smooth normal with probability `reflectance`.
+#[inline]
+pub fn interact<C: Chooser>(reflectance: f64, at: &Incidence, chooser: &mut C) -> Outcome {
+    if !chooser.happens(reflectance) {
+        return Outcome::Absorbed;
+    }
+    let (normal, behind) = working_normal(at);
+    let reflected = at.direction - 2.0 * at.direction.dot(normal) * normal;
+    let (direction, mirrored) = keep_side(reflected, at.facet);
+    Outcome::Leaves { direction: direction.normalize(), through: false, corrected: behind || mirrored }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::script::Script;
+    use glam::DVec3;
+
+    #[test]
+    fn reflects_by_the_law_and_absorbs_the_rest() {
+        let at = Incidence {
+            direction: DVec3::new(0.6, 0.0, -0.8),
+            facet: DVec3::Z,
+            smooth: DVec3::Z,
+            front: true,
+        };
+        let mut script = Script { events: vec![true, false], ..Script::default() };
+        match interact(0.7, &at, &mut script) {
+            Outcome::Leaves { direction, through: false, corrected: false } => {
+                assert!((direction - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-15);
+            }
+            other => panic!("{other:?}"),
+        }
+        assert!(matches!(interact(0.7, &at, &mut script), Outcome::Absorbed));
+        assert_eq!(script.asked, [0.7, 0.7]);
+        assert!(matches!(interact(1.0, &at, &mut Script::default()), Outcome::Leaves { .. }));
+    }
+}
