@@ -21,6 +21,9 @@ pub struct Dielectric {
 /// incident and the cosine of incidence; total reflection is (1, 0).
 #[inline]
 pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
+    if eta == 1.0 {
+        return (0.0, cos_i); // An index-matched face is not there: exactly nothing is reflected, nothing is drawn.
+    }
     let sin2_t = (1.0 - cos_i) * (1.0 + cos_i) / (eta * eta);
     if sin2_t >= 1.0 {
         return (1.0, 0.0);
