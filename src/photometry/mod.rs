@@ -1,1 +1,135 @@
 //! Photometric files: reading, symmetry, flux, summary.
+//!
+//! A file is read once and checked once ([`lm63::read`]); what comes out is plain data. Intensities in [`Web`] are
+//! the file's values times its candela multiplier; [`Photometry::factor`] holds what stands beside them (ballast
+//! factor, and field 12 where it is a factor). Degrees live here and in no later module: [`Web::full_grid`] hands
+//! out radians.
+
+pub mod beam;
+pub mod flux;
+pub mod lm63;
+pub mod opening;
+pub mod summary;
+pub mod unfold;
+pub mod web;
+
+pub use opening::{LuminousOpening, OpeningShape};
+pub use summary::Summary;
+pub use unfold::FullGrid;
+pub use web::{PhotometricType, Symmetry, Web};
+
+use crate::error::Diagnostic;
+
+/// The edition of LM-63 whose rules a file was read by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Revision {
+    /// LM-63-1986: no version line.
+    Y1986,
+    /// LM-63-1991: `IESNA91`.
+    Y1991,
+    /// LM-63-1995.
+    Y1995,
+    /// LM-63-2002.
+    Y2002,
+    /// LM-63-2019, and any later or unknown `IES` version line.
+    Y2019,
+}
+
+impl Revision {
+    /// The year, as text.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Y1986 => "1986",
+            Self::Y1991 => "1991",
+            Self::Y1995 => "1995",
+            Self::Y2002 => "2002",
+            Self::Y2019 => "2019",
+        }
+    }
+
+    /// Whether field 12 (second number of the three-number record) is the ballast-lamp photometric factor. Later
+    /// editions reserve it (1995, 2002) or store the file generation type in it (2019).
+    pub fn field12_is_factor(self) -> bool {
+        matches!(self, Self::Y1986 | Self::Y1991)
+    }
+}
+
+/// How lamp output depends on the mounting tilt. It does not depend on the emission angle, so it is kept, shown
+/// and never multiplied into the intensities: they hold for the luminaire as it was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Tilt {
+    /// `TILT=NONE`.
+    None,
+    /// `TILT=INCLUDE`: the table is in the file.
+    Include(TiltTable),
+    /// `TILT=name`: the table is in a file beside it; `None` when that file was not read.
+    File {
+        /// The name after `TILT=`.
+        name: String,
+        /// The table, if the file could be read.
+        table: Option<TiltTable>,
+    },
+}
+
+/// A tilt table: factors over the angle between the luminaire's axis and the vertical.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TiltTable {
+    /// Lamp-to-luminaire geometry: 1 vertical lamp, 2 horizontal and stays so, 3 horizontal and tilts.
+    pub geometry: u32,
+    /// Mounting angles, degrees.
+    pub angles_deg: Vec<f64>,
+    /// Factors at those angles.
+    pub factors: Vec<f64>,
+}
+
+/// A photometric file as it was read: plain data, lengths in metres, powers in watts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Photometry {
+    /// The file, as the caller named it.
+    pub file: String,
+    /// The edition whose rules were applied.
+    pub revision: Revision,
+    /// Keyword (without brackets; empty for a free label line) and text, in file order; `[MORE]` lines are joined
+    /// to the keyword they continue, with a line feed.
+    pub labels: Vec<(String, String)>,
+    /// Tilt of the lamp; never multiplied into the intensities.
+    pub tilt: Tilt,
+    /// Number of lamps.
+    pub lamps: f64,
+    /// Lumens per lamp; `None` for absolute photometry (-1 in the file). It never scales the intensities.
+    pub lumens_per_lamp: Option<f64>,
+    /// Candela multiplier, already in [`Web::candela`].
+    pub multiplier: f64,
+    /// Ballast factor, not in [`Web::candela`].
+    pub ballast_factor: f64,
+    /// Field 12: ballast-lamp photometric factor (1986, 1991), reserved (1995, 2002), file generation type (2019).
+    pub field12: f64,
+    /// Field 12 as written: the 2019 code is text, not a quantity.
+    pub field12_text: String,
+    /// Input power, watts; 0 where the file does not know it.
+    pub input_watts: f64,
+    /// Luminous opening.
+    pub opening: LuminousOpening,
+    /// The intensities.
+    pub web: Web,
+    /// `[_TOTALLUMINAIRELUMENS]`, lm, if the file declares it: the maker's own number, without ballast factor.
+    pub flux_declared_lm: Option<f64>,
+    /// What is wrong with the file and was tolerated.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Photometry {
+    /// Factor from [`Web::candela`] to what the luminaire emits: ballast factor, times field 12 in 1986 and 1991.
+    pub fn factor(&self) -> f64 {
+        if self.revision.field12_is_factor() {
+            self.ballast_factor * self.field12
+        } else {
+            self.ballast_factor
+        }
+    }
+
+    /// Text of the first label with this keyword (case ignored, no brackets).
+    pub fn label(&self, keyword: &str) -> Option<&str> {
+        self.labels.iter().find(|(key, _)| key.eq_ignore_ascii_case(keyword)).map(|(_, text)| text.as_str())
+    }
+}

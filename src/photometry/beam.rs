@@ -1,0 +1,146 @@
+//! Beam and field angle.
+
+use super::{PhotometricType, Web};
+
+/// The share of the plane's maximum at which a beam ends (beam angle).
+pub const BEAM_SHARE: f64 = 0.5;
+/// The share of the plane's maximum at which the field ends (field angle).
+pub const FIELD_SHARE: f64 = 0.1;
+
+/// Full angle in degrees of the lobe that holds the maximum of the principal plane, between the two directions where
+/// the intensity has fallen to `share` of that maximum, linear between the table's angles. `None` for a dark plane.
+///
+/// The principal plane is C0-C180 (type C) or V = 0 (types A and B). The lobe is followed from the maximum to both
+/// sides as long as it stays above the share: a batwing whose middle falls below half counts one wing. Where the
+/// table ends above the share the lobe ends there; one that never falls is 360 degrees wide.
+pub fn lobe_angle_deg(web: &Web, share: f64) -> Option<f64> {
+    let profile = Profile::principal(web);
+    let peak = profile.peak()?;
+    let level = share * profile.intensity_cd[peak];
+    let after = profile.walk(peak, level, 1);
+    let before = profile.walk(peak, level, -1);
+    match (before, after) {
+        (Some(before), Some(after)) => Some((before + after).min(360.0)),
+        _ => Some(360.0),
+    }
+}
+
+/// Intensities along one plane.
+struct Profile {
+    angle_deg: Vec<f64>,
+    intensity_cd: Vec<f64>,
+    /// Whether the last angle is the first one, a turn further.
+    closed: bool,
+}
+
+impl Profile {
+    fn principal(web: &Web) -> Self {
+        match web.photometric_type {
+            PhotometricType::C => Self::c0_c180(web),
+            _ => Self::horizontal(web),
+        }
+    }
+
+    /// V along C0 counts positive, along C180 negative.
+    fn c0_c180(web: &Web) -> Self {
+        let v = &web.vertical_deg;
+        let c180 = v.iter().rev().filter(|&&v| v > 0.0).map(|&v| (-v, web.intensity_cd(v, 180.0)));
+        let c0 = v.iter().map(|&v| (v, web.intensity_cd(v, 0.0)));
+        // A table that ends before the nadir is dark in between: the lobe must not leap across.
+        let edge = v.first().copied().filter(|&v| v > 0.0);
+        let dark = edge.into_iter().flat_map(|v| [(-v, 0.0), (v, 0.0)]);
+        let (angle_deg, intensity_cd) = c180.chain(dark).chain(c0).unzip();
+        Self { angle_deg, intensity_cd, closed: v.last() == Some(&180.0) }
+    }
+
+    fn horizontal(web: &Web) -> Self {
+        let h = &web.horizontal_deg;
+        let mirrored = h.first() == Some(&0.0) && h.len() > 1;
+        let mut angle_deg: Vec<f64> = if h.len() == 1 { vec![-90.0, 90.0] } else { h.clone() };
+        if mirrored {
+            let left: Vec<f64> = h.iter().skip(1).rev().map(|h| -h).collect();
+            angle_deg.splice(0..0, left);
+        }
+        let intensity_cd = angle_deg.iter().map(|&h| web.intensity_cd(0.0, h)).collect();
+        Self { angle_deg, intensity_cd, closed: false }
+    }
+
+    /// The node of the maximum; of equal ones the nearest to the axis.
+    fn peak(&self) -> Option<usize> {
+        let mut best: Option<usize> = None;
+        for (i, &c) in self.intensity_cd.iter().enumerate().filter(|&(_, &c)| c > 0.0) {
+            let better = best.is_none_or(|b| {
+                let nearer = self.angle_deg[i].abs() < self.angle_deg[b].abs();
+                c > self.intensity_cd[b] || (c == self.intensity_cd[b] && nearer)
+            });
+            if better {
+                best = Some(i);
+            }
+        }
+        best
+    }
+
+    /// Degrees from node `start` to where the intensity falls to `level`; `None` if it never does.
+    fn walk(&self, start: usize, level: f64, step: isize) -> Option<f64> {
+        let n = self.angle_deg.len();
+        let (mut at, mut gone) = (start, 0.0);
+        for _ in 0..n {
+            let next = match at.checked_add_signed(step).filter(|&i| i < n) {
+                Some(next) => next,
+                // The node at -180 is the node at 180: go on from there, at no distance.
+                None if self.closed => {
+                    at = if step > 0 { 0 } else { n - 1 };
+                    continue;
+                }
+                None => return Some(gone),
+            };
+            let width = (self.angle_deg[next] - self.angle_deg[at]).abs();
+            let (here, there) = (self.intensity_cd[at], self.intensity_cd[next]);
+            if there < level {
+                return Some(gone + width * (here - level) / (here - there));
+            }
+            gone += width;
+            at = next;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use PhotometricType::{B, C};
+
+    fn web(v: &[f64], h: &[f64], candela: &[f64]) -> Web {
+        Web::new(C, v.to_vec(), h.to_vec(), candela.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn full_angles_of_known_lobes() {
+        let beam = |w: &Web| lobe_angle_deg(w, BEAM_SHARE);
+        // 100 at 0, 0 at 40: half at 20, a tenth at 36.
+        let cone = web(&[0.0, 40.0, 90.0], &[0.0], &[100.0, 0.0, 0.0]);
+        assert_eq!((beam(&cone), lobe_angle_deg(&cone, FIELD_SHARE)), (Some(40.0), Some(72.0)));
+        // The same, upwards: the lobe is around 180.
+        let up = web(&[90.0, 140.0, 180.0], &[0.0], &[0.0, 0.0, 100.0]);
+        assert_eq!(beam(&up), Some(40.0));
+        // One-sided: peak at V = 30 in C0 only, half at 25 and 40.
+        let side = web(
+            &[0.0, 20.0, 30.0, 50.0, 90.0],
+            &[0.0, 90.0, 180.0, 270.0, 360.0],
+            &[[0.0, 0.0, 100.0, 0.0, 0.0], [0.0; 5], [0.0; 5], [0.0; 5], [0.0, 0.0, 100.0, 0.0, 0.0]]
+                .concat(),
+        );
+        assert_eq!(beam(&side), Some(15.0));
+        // Cut off at the table's end, everywhere above half, dark.
+        assert_eq!(beam(&web(&[0.0, 70.0], &[0.0], &[100.0, 90.0])), Some(140.0));
+        assert_eq!(beam(&web(&[0.0, 180.0], &[0.0], &[100.0, 90.0])), Some(360.0));
+        assert_eq!(beam(&web(&[0.0, 90.0], &[0.0], &[0.0, 0.0])), None);
+        // Zero below V = 30: the two sides are apart.
+        assert_eq!(beam(&web(&[30.0, 50.0], &[0.0], &[100.0, 0.0])), Some(10.0));
+        let flood =
+            Web::new(B, vec![-10.0, 0.0, 10.0], vec![0.0, 40.0], vec![0.0, 100.0, 0.0, 0.0, 0.0, 0.0])
+                .unwrap();
+        assert_eq!(beam(&flood), Some(40.0));
+    }
+}
