@@ -40,7 +40,8 @@ impl Dielectric {
     pub fn interact<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Outcome {
         let eta = if at.front { self.ior / self.ior_outside } else { self.ior_outside / self.ior };
         let (normal, behind) = working_normal(at);
-        let cos_i = (-at.direction.dot(normal)).min(1.0);
+        // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
+        let cos_i = (-at.direction.dot(normal)).clamp(0.0, 1.0);
         let (reflectance, cos_t) = fresnel(eta, cos_i);
         let through = !chooser.happens(reflectance);
         let (direction, towards) = if through {

@@ -1,1 +1,3 @@
 //! From sums to illuminance and standard errors.
+
+pub mod replicates;

@@ -1,0 +1,58 @@
+//! Standard errors from independent replicates (METHOD 7).
+//!
+//! A run traces R sets of n = N / R points under independent randomisations. A count summed over the replicates has the
+//! standard error sqrt(R s^2), s^2 the variance of the R counts with R - 1 degrees of freedom. A cell with fewer than 10
+//! hits in all, whose spread says nothing, gets the Poisson error of (hits + 1) instead, so it is never 0.
+
+/// Hits below which a cell's own spread is not used.
+pub const FEWEST_HITS: u64 = 10;
+
+/// Standard error of a count summed over `replicates` replicates, in photons, for a cell; `None` for one replicate: the
+/// points of one set are not independent and say nothing about their error.
+#[inline]
+pub fn standard_error_of_cell(sum: u64, square: u128, replicates: u32) -> Option<f64> {
+    if replicates < 2 {
+        return None;
+    }
+    if sum < FEWEST_HITS {
+        return Some(((sum + 1) as f64).sqrt());
+    }
+    standard_error_of_total(sum, square, replicates)
+}
+
+/// The same for a total, where the spread is used whatever the number of hits.
+#[inline]
+pub fn standard_error_of_total(sum: u64, square: u128, replicates: u32) -> Option<f64> {
+    let r = u128::from(replicates);
+    if r < 2 {
+        return None;
+    }
+    // R s^2 = (R sum of squares - square of the sum) / (R - 1), the difference exact in integers. It overflows only
+    // beyond 2^64 photons; saturation keeps that from wrapping.
+    let spread = r.saturating_mul(square).saturating_sub(u128::from(sum) * u128::from(sum));
+    Some((spread as f64 / (r - 1) as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matches_the_textbook_formula() {
+        let counts = [101u64, 97, 110, 92, 100];
+        let sum: u64 = counts.iter().sum();
+        let square: u128 = counts.iter().map(|c| u128::from(c * c)).sum();
+        let mean = 100.0;
+        let variance = counts.iter().map(|c| (*c as f64 - mean).powi(2)).sum::<f64>() / 4.0;
+        let expected = (5.0 * variance).sqrt();
+        assert!((standard_error_of_cell(sum, square, 5).unwrap() - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn few_hits_are_never_certain_and_one_replicate_knows_nothing() {
+        assert_eq!(standard_error_of_cell(0, 0, 8), Some(1.0));
+        assert_eq!(standard_error_of_cell(3, 9, 8), Some(2.0));
+        assert_eq!(standard_error_of_cell(100, 10_000, 1), None);
+        assert_eq!(standard_error_of_total(0, 0, 8), Some(0.0));
+    }
+}

@@ -1,0 +1,100 @@
+//! Receivers: arrivals on a surface, sorted into cells.
+//!
+//! A receiver counts flux arriving before the event, whatever the material, on the sides and of the history it asks for.
+//! A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is the (u = 0, v = 1) corner. A
+//! mesh has a cell a face.
+
+use crate::geometry::{Geometry, Hit};
+use crate::scene::receiver::{Cells, Receiver};
+use crate::scene::description::{ReceiverEvents, ReceiverSide};
+use crate::transport::{Arrival, Sink};
+
+use super::counts::Counts;
+
+/// The counters of all receivers of a scene, for one replicate.
+#[derive(Debug)]
+pub struct Receivers<'s> {
+    geometry: &'s Geometry,
+    receivers: &'s [Receiver],
+    /// Receivers on each surface.
+    on_surface: Vec<Vec<u32>>,
+    counts: Vec<Counts>,
+}
+
+impl<'s> Receivers<'s> {
+    /// Counters at zero for these receivers.
+    pub fn new(geometry: &'s Geometry, receivers: &'s [Receiver]) -> Self {
+        let mut on_surface = vec![Vec::new(); geometry.surfaces().len()];
+        for (i, receiver) in receivers.iter().enumerate() {
+            on_surface[receiver.surface.0 as usize].push(i as u32);
+        }
+        let counts = receivers.iter().map(|r| Counts::new(r.cells.len())).collect();
+        Self { geometry, receivers, on_surface, counts }
+    }
+
+    /// A handle for one batch of photons; all handles add to the same counters.
+    pub fn sink(&self) -> ReceiverSink<'_, 's> {
+        ReceiverSink { receivers: self }
+    }
+
+    /// Counts of a receiver, row by row from the top left, or face by face.
+    pub fn counts(&self, receiver: usize) -> &Counts {
+        &self.counts[receiver]
+    }
+
+    /// Adds the counts of another tally of the same scene.
+    pub fn merge(&mut self, other: &Self) {
+        for (a, b) in self.counts.iter_mut().zip(&other.counts) {
+            a.merge(b);
+        }
+    }
+
+    /// Sets everything to zero, for the next replicate.
+    pub fn clear(&mut self) {
+        self.counts.iter_mut().for_each(Counts::clear);
+    }
+
+    fn cell(&self, receiver: &Receiver, hit: &Hit) -> Option<usize> {
+        match receiver.cells {
+            Cells::Faces { count } => ((hit.face as usize) < count).then_some(hit.face as usize),
+            Cells::Grid { nu, nv } => {
+                let shape = &self.geometry.surfaces()[hit.surface.0 as usize].shape;
+                let (u, v) = shape.uv(hit.position)?;
+                let column = ((u * f64::from(nu)) as u32).min(nu - 1);
+                let row = nv - 1 - ((v * f64::from(nv)) as u32).min(nv - 1);
+                Some(row as usize * nu as usize + column as usize)
+            }
+        }
+    }
+}
+
+/// Adds arrivals to a scene's receivers.
+#[derive(Debug, Clone, Copy)]
+pub struct ReceiverSink<'r, 's> {
+    receivers: &'r Receivers<'s>,
+}
+
+impl Sink for ReceiverSink<'_, '_> {
+    #[inline]
+    fn arrive(&mut self, arrival: &Arrival<'_>) {
+        let all = self.receivers;
+        for &i in &all.on_surface[arrival.hit.surface.0 as usize] {
+            let receiver = &all.receivers[i as usize];
+            let side = match receiver.side {
+                ReceiverSide::Both => true,
+                ReceiverSide::Front => arrival.hit.front,
+                ReceiverSide::Back => !arrival.hit.front,
+            };
+            let history = match receiver.events {
+                ReceiverEvents::All => true,
+                ReceiverEvents::Direct => arrival.events == 0,
+                ReceiverEvents::Indirect => arrival.events > 0,
+            };
+            if side && history {
+                if let Some(cell) = all.cell(receiver, arrival.hit) {
+                    all.counts[i as usize].add(cell);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! What a batch of photons did beside hitting receivers: coordinates used, exceptions made.
+
+use crate::sample::coordinates::Purpose;
+
+/// Longest constructive dimension with a bar of its own in the histogram; longer ones share the last.
+pub const LONGEST_DIMENSION: usize = 64;
+
+/// Things that geometry and smooth normals make necessary now and then, counted so that they are never hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Exceptions {
+    /// Candidate hits that were the crossing just made, seen again through rounding.
+    pub skipped_crossings: u64,
+    /// Directions mirrored back to their side of the facet, and arrivals behind the smooth normal (METHOD 1).
+    pub corrected_directions: u64,
+}
+
+/// Counts over photons; all integers, so merging is exact in any order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Census {
+    /// Photons by the number of coordinates they consumed (0 to 64, the last also beyond).
+    pub dimension_histogram: Vec<u64>,
+    /// Most coordinates one photon consumed.
+    pub dimension_max: u32,
+    /// Coordinates consumed in all, by purpose in the order of [`Purpose::ALL`].
+    pub drawn_for: [u64; Purpose::ALL.len()],
+    /// Exceptions.
+    pub exceptions: Exceptions,
+}
+
+impl Default for Census {
+    fn default() -> Self {
+        Self {
+            dimension_histogram: vec![0; LONGEST_DIMENSION + 1],
+            dimension_max: 0,
+            drawn_for: [0; Purpose::ALL.len()],
+            exceptions: Exceptions::default(),
+        }
+    }
+}
+
+impl Census {
+    /// Counts a photon that consumed `drawn` coordinates.
+    #[inline]
+    pub fn count(&mut self, drawn: u32, drawn_for: &[u32; Purpose::ALL.len()]) {
+        self.dimension_histogram[(drawn as usize).min(LONGEST_DIMENSION)] += 1;
+        self.dimension_max = self.dimension_max.max(drawn);
+        for (sum, n) in self.drawn_for.iter_mut().zip(drawn_for) {
+            *sum += u64::from(*n);
+        }
+    }
+
+    /// Photons counted.
+    pub fn photons(&self) -> u64 {
+        self.dimension_histogram.iter().sum()
+    }
+
+    /// Mean constructive dimension, coordinates a photon; 0 for no photons.
+    pub fn dimension_mean(&self) -> f64 {
+        let photons = self.photons();
+        if photons == 0 { 0.0 } else { self.drawn_for.iter().sum::<u64>() as f64 / photons as f64 }
+    }
+
+    /// Adds another census.
+    pub fn merge(&mut self, other: &Self) {
+        for (a, b) in self.dimension_histogram.iter_mut().zip(&other.dimension_histogram) {
+            *a += b;
+        }
+        self.dimension_max = self.dimension_max.max(other.dimension_max);
+        for (a, b) in self.drawn_for.iter_mut().zip(&other.drawn_for) {
+            *a += b;
+        }
+        self.exceptions.skipped_crossings += other.exceptions.skipped_crossings;
+        self.exceptions.corrected_directions += other.exceptions.corrected_directions;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_and_maximum_come_from_all_photons_even_beyond_the_histogram() {
+        let mut census = Census::default();
+        census.count(3, &[1, 0, 1, 0, 1, 0]);
+        census.count(101, &[1, 0, 1, 0, 49, 50]);
+        assert_eq!((census.photons(), census.dimension_max, census.dimension_mean()), (2, 101, 52.0));
+        let mut twice = census.clone();
+        twice.merge(&census);
+        assert_eq!((twice.photons(), twice.dimension_mean()), (4, 52.0));
+        assert_eq!(twice.dimension_histogram[LONGEST_DIMENSION], 2);
+    }
+}
