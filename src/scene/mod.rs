@@ -1,1 +1,8 @@
 //! Scenes: what is read from a scene file, checked once.
+
+pub mod count;
+pub mod description;
+pub mod file;
+pub mod source;
+pub mod suggest;
+pub mod toml_table;

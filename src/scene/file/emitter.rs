@@ -1,0 +1,105 @@
+//! `[[emitter]]`: photometric, isotropic, collimated.
+
+use glam::DVec3;
+
+use super::names::Names;
+use super::{COORDINATE, LENGTH, direction};
+use crate::error::Kind;
+use crate::scene::description::{BeamSection, EmitterDescription, EmitterShape, Frame};
+use crate::scene::toml_table::{Interval, Table};
+
+const FLUX: Interval = Interval { low: 1e-9, high: 1e12, words: "a flux from 1e-9 to 1e12 lm" };
+
+#[derive(Clone, Copy)]
+enum Type {
+    Photometric,
+    Isotropic,
+    Collimated,
+}
+
+const TYPES: [(&str, Type); 3] =
+    [("photometric", Type::Photometric), ("isotropic", Type::Isotropic), ("collimated", Type::Collimated)];
+
+pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterDescription> {
+    let place = table.place();
+    let given = table.text("name");
+    let name_place = given.as_ref().map_or(place, |n| n.place);
+    let name = given.map_or_else(|| format!("emitter {}", index + 1), |n| n.value);
+    names.insert(table.document(), &name, name_place, index);
+
+    if table.is_unavailable("type", &["panel"], &TYPES.map(|(word, _)| word)) {
+        return None;
+    }
+    let kind = table.word("type", &TYPES);
+    let kind = table.require("type", kind, "\"photometric\", \"isotropic\" or \"collimated\"")?;
+    table.call(match kind {
+        Type::Photometric => "a photometric [[emitter]]",
+        Type::Isotropic => "an isotropic [[emitter]]",
+        Type::Collimated => "a collimated [[emitter]]",
+    });
+
+    let position = table.vector("position", &COORDINATE);
+    let position = table.require("position", position, "[x, y, z] in metres");
+    let flux_lm = table.number("flux_lm", &FLUX);
+    let (shape, frame) = match kind {
+        Type::Photometric => {
+            let file = table.path("file");
+            (file.map(|file| EmitterShape::Photometric { file }), read_frame(&mut table))
+        }
+        Type::Isotropic => {
+            table.require("flux_lm", flux_lm, FLUX.words);
+            (Some(EmitterShape::Isotropic), Some(Frame { aim: DVec3::NEG_Z, up: DVec3::Y }))
+        }
+        Type::Collimated => {
+            table.require("flux_lm", flux_lm, FLUX.words);
+            let section = read_section(&mut table);
+            (section.map(|section| EmitterShape::Collimated { section }), read_frame(&mut table))
+        }
+    };
+    table.finish();
+    Some(EmitterDescription { name, position: position?, frame: frame?, flux_lm, shape: shape?, place })
+}
+
+/// `aim` and `up`, made orthogonal.
+fn read_frame(table: &mut Table<'_, '_>) -> Option<Frame> {
+    let aim = direction(table, "aim", Some(DVec3::NEG_Z));
+    let is_given = table.place_of("up").is_some();
+    let up = direction(table, "up", Some(DVec3::Y));
+    let (aim, up) = (aim?, up?);
+    if let Some(up) = orthogonal_part(up, aim) {
+        return Some(Frame { aim, up });
+    }
+    if is_given {
+        table.error("up", Kind::Range, "a direction that is not parallel to aim");
+        return None;
+    }
+    orthogonal_part(DVec3::X, aim).map(|up| Frame { aim, up })
+}
+
+/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the angle
+/// between their lines is below 1e-9, where rounding would choose the direction.
+fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
+    let sine = v.cross(axis).length();
+    // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.
+    let once = super::unit(v - axis * v.dot(axis))?;
+    let part = super::unit(once - axis * once.dot(axis))?;
+    (sine >= 1e-9).then_some(part)
+}
+
+/// `radius`, or `size = [width, height]`.
+fn read_section(table: &mut Table<'_, '_>) -> Option<BeamSection> {
+    let radius = table.number("radius", &LENGTH);
+    let size = table.numbers::<2>("size", &LENGTH);
+    match (table.place_of("radius").is_some(), table.place_of("size").is_some()) {
+        (true, true) => {
+            table.error("size", Kind::Range, "either radius or size, not both");
+            None
+        }
+        (true, false) => radius.map(|radius| BeamSection::Disc { radius }),
+        (false, true) => size.map(|[width, height]| BeamSection::Rectangle { width, height }),
+        (false, false) => {
+            table.error("radius", Kind::Missing, "... for a disc, or size = [width, height], in metres");
+            None
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `[material.NAME]`: dielectric, mirror, lambertian, absorber.
+
+use crate::error::Kind;
+use crate::scene::description::{MaterialDescription, MaterialKind};
+use crate::scene::toml_table::{Interval, Table};
+
+const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
+const REFLECTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a reflectance from 0 to 1" };
+
+#[derive(Clone, Copy)]
+enum Type {
+    Dielectric,
+    Mirror,
+    Lambertian,
+    Absorber,
+}
+
+const TYPES: [(&str, Type); 4] = [
+    ("dielectric", Type::Dielectric),
+    ("mirror", Type::Mirror),
+    ("lambertian", Type::Lambertian),
+    ("absorber", Type::Absorber),
+];
+
+pub(super) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDescription> {
+    let place = table.place();
+    if table.is_unavailable("type", &["conductor", "tabulated"], &TYPES.map(|(word, _)| word)) {
+        return None;
+    }
+    let kind = table.word("type", &TYPES);
+    let kind = table.require("type", kind, "\"dielectric\", \"mirror\", \"lambertian\" or \"absorber\"")?;
+    let kind = match kind {
+        Type::Dielectric => read_dielectric(&mut table),
+        Type::Mirror => {
+            table.call("a mirror");
+            let reflectance = table.number("reflectance", &REFLECTANCE).unwrap_or(1.0);
+            Some(MaterialKind::Mirror { reflectance })
+        }
+        Type::Lambertian => {
+            table.call("a lambertian material");
+            let reflectance = table.number("reflectance", &REFLECTANCE);
+            let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+            reflectance.map(|reflectance| MaterialKind::Lambertian { reflectance })
+        }
+        Type::Absorber => {
+            table.call("an absorber");
+            Some(MaterialKind::Absorber)
+        }
+    };
+    table.finish();
+    Some(MaterialDescription { name, kind: kind?, place })
+}
+
+fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+    table.call("a dielectric");
+    let ior = table.number("ior", &IOR);
+    let ior_outside = table.number("ior_outside", &IOR).unwrap_or(1.0);
+    let ior = table.require("ior", ior, IOR.words)?;
+    if ior == ior_outside {
+        let place = table.place_of("ior").unwrap_or(table.place());
+        let found = format!("ior = {ior}, the same as ior_outside");
+        table.document().warn_at(place, Kind::Range, found, "two media that differ: light passes unchanged");
+    }
+    Some(MaterialKind::Dielectric { ior, ior_outside })
+}
