@@ -1,3 +1,7 @@
 //! The `caustix` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    caustix::cli::main()
+}

@@ -1,3 +1,203 @@
-//! The command line, one file a subcommand.
+//! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
+pub mod check;
 pub mod photometry;
+pub mod render;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::error::{Diagnostic, Kind};
+use crate::scene::count::parse_count;
+
+/// Exit codes of the contract.
+pub mod exit {
+    /// Done.
+    pub const DONE: u8 = 0;
+    /// The input or the request is wrong.
+    pub const WRONG: u8 = 1;
+    /// Usage.
+    pub const USAGE: u8 = 2;
+    /// Interrupted; what there is was written.
+    pub const INTERRUPTED: u8 = 130;
+}
+
+/// Photons from photometric files through glass, water and mirrors: illuminance maps in lux, and the error of every
+/// number.
+#[derive(Debug, Parser)]
+#[command(name = "caustix", version, about, disable_help_subcommand = true)]
+struct Command {
+    #[command(subcommand)]
+    subcommand: Option<Sub>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Sub {
+    /// Trace a scene and write its illuminance maps (without SCENE: the built-in scene).
+    Render(RenderArgs),
+    /// Say what a photometric file (IES LM-63) holds: flux, maximum, angles, symmetry.
+    Photometry(PhotometryArgs),
+    /// Check a scene without tracing it.
+    Check(CheckArgs),
+    /// The error of every algorithm variant (not available yet).
+    Compare(Later),
+    /// Sample directions of a photometric file (not available yet).
+    Sample(Later),
+    /// Say what a BSDF file holds (not available yet).
+    Bsdf(Later),
+}
+
+#[derive(Debug, Args)]
+struct Later {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    rest: Vec<String>,
+}
+
+/// Arguments of `caustix render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Scene file; the built-in scene if absent.
+    pub scene: Option<PathBuf>,
+    /// Directory for the results; made if it is not there.
+    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
+    pub output: PathBuf,
+    /// Photons in all, like 4_456_448, 4.5e6 or 2^22 [default: the scene's, else 2^22].
+    #[arg(long, value_name = "N")]
+    pub photons: Option<String>,
+    /// Algorithm variant: qmc-inverse-reuse (default) or qmc-inverse.
+    #[arg(long, value_name = "V")]
+    pub variant: Option<String>,
+    /// Point sequence: sobol-owen (default), sobol or independent.
+    #[arg(long, value_name = "S")]
+    pub sequence: Option<String>,
+    /// Seed of the randomisation [default: the scene's, else 1].
+    #[arg(long, value_name = "K")]
+    pub seed: Option<u64>,
+    /// Independent replicates, from which the standard errors come [default: the scene's, else 8].
+    #[arg(long, value_name = "R")]
+    pub replicates: Option<u32>,
+    /// Threads [default: all cores]. The results do not depend on it.
+    #[arg(long, value_name = "T")]
+    pub threads: Option<usize>,
+    /// Not available yet.
+    #[arg(long, value_name = "PERCENT", hide = true)]
+    pub error: Option<String>,
+    /// Not available yet.
+    #[arg(long, value_name = "SECONDS", hide = true)]
+    pub time: Option<String>,
+    /// Not available yet.
+    #[arg(long, hide = true)]
+    pub resume: bool,
+    /// No progress bar and no summary.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+impl Default for RenderArgs {
+    fn default() -> Self {
+        Self {
+            scene: None,
+            output: PathBuf::from("caustix-out"),
+            photons: None,
+            variant: None,
+            sequence: None,
+            seed: None,
+            replicates: None,
+            threads: None,
+            error: None,
+            time: None,
+            resume: false,
+            quiet: false,
+        }
+    }
+}
+
+/// Arguments of `caustix photometry`.
+#[derive(Debug, Args)]
+pub struct PhotometryArgs {
+    /// Photometric file (IES LM-63).
+    pub file: PathBuf,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Write a polar candela diagram (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `caustix check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file; the built-in scene if absent.
+    pub scene: Option<PathBuf>,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Runs the command with the arguments of the process.
+pub fn main() -> ExitCode {
+    let command = match Command::try_parse() {
+        Ok(command) => command,
+        Err(error) => {
+            // Help and version are no errors; clap writes either to where it belongs.
+            let code = if error.use_stderr() { exit::USAGE } else { exit::DONE };
+            let _printed = error.print();
+            return ExitCode::from(code);
+        }
+    };
+    let code = match command.subcommand {
+        None => render::run(&RenderArgs::default()),
+        Some(Sub::Render(args)) => render::run(&args),
+        Some(Sub::Photometry(args)) => photometry::run(&args),
+        Some(Sub::Check(args)) => check::run(&args),
+        Some(Sub::Compare(_)) => not_available("compare"),
+        Some(Sub::Sample(_)) => not_available("sample"),
+        Some(Sub::Bsdf(_)) => not_available("bsdf"),
+    };
+    ExitCode::from(code)
+}
+
+/// Says that something of the contract is not built yet.
+fn not_available(what: &str) -> u8 {
+    say(&format!("caustix: {what} is not available yet"));
+    exit::USAGE
+}
+
+/// A line to stderr; a closed stderr is no reason to fail.
+#[allow(clippy::print_stderr)]
+fn say(line: &str) {
+    use std::io::Write;
+    let _written = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Text to stdout. A reader that has gone away (a closed pipe) is no reason to fail.
+fn print(text: &str) {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    let _written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// Says errors and gives the exit code for them.
+fn fail(errors: &[Diagnostic]) -> u8 {
+    for error in errors {
+        say(&format!("error: {error}"));
+    }
+    exit::WRONG
+}
+
+/// Says warnings.
+fn warn(warnings: &[Diagnostic]) {
+    for warning in warnings {
+        say(&format!("warning: {warning}"));
+    }
+}
+
+/// A count given on the command line.
+fn count(option: &str, text: Option<&String>) -> Result<Option<u64>, Diagnostic> {
+    text.map(|t| parse_count(t)).transpose().map_err(|e| {
+        Diagnostic::new(Kind::Range, format!("{option} {}", e.found()), e.required().to_string())
+    })
+}

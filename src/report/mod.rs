@@ -1,1 +1,10 @@
-//! What a run says.
+//! What a run says: report.json, the printed summary, the files of each receiver.
+
+pub mod attributes;
+pub mod json;
+pub mod maps;
+pub mod polar;
+pub mod statistics;
+pub mod text;
+
+pub use json::Report;

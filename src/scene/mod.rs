@@ -1,8 +1,133 @@
-//! Scenes: what is read from a scene file, checked once.
+//! Scenes: what is read from a scene file, checked once, and built for tracing.
+//!
+//! [`file`] reads the text into a [`description`]; [`build`] loads the files it names and makes a [`Scene`]: surfaces with
+//! what they are made of, emitters, receivers. After that nothing is checked again.
 
+pub mod build;
+pub mod check;
 pub mod count;
 pub mod description;
 pub mod file;
+pub mod receiver;
+pub mod requires;
 pub mod source;
 pub mod suggest;
 pub mod toml_table;
+
+use crate::bsdf::Bsdf;
+use crate::emitter::{Emitter, Emitters};
+use crate::error::{Diagnostic, Result};
+use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
+
+use receiver::{Receiver, ReceiverSpec};
+
+/// What a run needs to be repeated, beside its settings: the scene and the hashes of the files it names.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Identity {
+    /// The scene file's path as given.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+    /// SHA-256 of the text, hexadecimal.
+    pub sha256: String,
+    /// (path as written in the scene, SHA-256 of the content), in the order of the scene.
+    pub files: Vec<(String, String)>,
+}
+
+/// A scene ready to be traced.
+#[derive(Debug)]
+pub struct Scene {
+    /// Surfaces and the search structure over them.
+    pub geometry: Geometry,
+    /// Emitters.
+    pub emitters: Emitters,
+    /// Receivers, in the order of the scene.
+    pub receivers: Vec<Receiver>,
+    /// Names of the emitters, in their order.
+    pub emitter_names: Vec<String>,
+    /// Where it comes from.
+    pub identity: Identity,
+    /// What is allowed but probably not meant.
+    pub warnings: Vec<Diagnostic>,
+    bsdfs: Vec<Bsdf>,
+    starts: Vec<Whereabouts>,
+}
+
+/// The parts of a scene, for those who build one in code.
+#[derive(Debug, Default)]
+pub struct SceneParts {
+    /// Surfaces and what they are made of.
+    pub surfaces: Vec<(Surface, Bsdf)>,
+    /// Emitters with their names.
+    pub emitters: Vec<(String, Emitter)>,
+    /// Receivers.
+    pub receivers: Vec<ReceiverSpec>,
+    /// Where the scene comes from; empty for one made in code.
+    pub identity: Identity,
+    /// Warnings so far.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Scene {
+    /// A scene of these parts, checked.
+    ///
+    /// # Errors
+    /// All that is wrong: geometry that cannot be traced, coincident surfaces, an emitter on a surface or inside a
+    /// closed dielectric, a receiver without area or on no surface, no flux.
+    pub fn new(parts: SceneParts) -> std::result::Result<Self, Vec<Diagnostic>> {
+        let (surfaces, bsdfs): (Vec<_>, Vec<_>) = parts.surfaces.into_iter().unzip();
+        let (emitter_names, emitters): (Vec<_>, Vec<_>) = parts.emitters.into_iter().unzip();
+        let mut errors = check::coincidences(&surfaces);
+        let geometry = Geometry::build(surfaces).map_err(|e| [std::mem::take(&mut errors), vec![e]].concat())?;
+        let keep = |result: Result<_>, errors: &mut Vec<Diagnostic>| result.map_err(|e| errors.push(e)).ok();
+        let receivers: Vec<Receiver> = parts
+            .receivers
+            .iter()
+            .filter_map(|spec| keep(Receiver::new(spec, &geometry), &mut errors))
+            .collect();
+        let mut starts = Vec::with_capacity(emitters.len());
+        for (name, emitter) in emitter_names.iter().zip(&emitters) {
+            match check::start(name, emitter, &geometry, &bsdfs) {
+                Ok(start) => starts.push(start),
+                Err(e) => errors.push(e),
+            }
+        }
+        let emitters = Emitters::new(emitters).map_err(|e| errors.push(e)).ok();
+        match emitters {
+            Some(emitters) if errors.is_empty() => Ok(Self {
+                geometry,
+                emitters,
+                receivers,
+                emitter_names,
+                identity: parts.identity,
+                warnings: parts.warnings,
+                bsdfs,
+                starts,
+            }),
+            _ => Err(errors),
+        }
+    }
+
+    /// What a surface is made of.
+    #[inline]
+    pub fn bsdf(&self, surface: SurfaceId) -> &Bsdf {
+        &self.bsdfs[surface.0 as usize]
+    }
+
+    /// What all surfaces are made of, by surface.
+    pub fn bsdfs(&self) -> &[Bsdf] {
+        &self.bsdfs
+    }
+
+    /// The side state of photons that leave an emitter.
+    #[inline]
+    pub fn start(&self, emitter: usize) -> Whereabouts {
+        self.starts[emitter]
+    }
+
+    /// Bytes held by geometry and emitters.
+    pub fn memory_bytes(&self) -> usize {
+        let emitters: usize = self.emitters.as_slice().iter().map(Emitter::memory_bytes).sum();
+        self.geometry.memory_bytes() + emitters
+    }
+}

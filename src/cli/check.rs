@@ -1,0 +1,171 @@
+//! `caustix check SCENE.toml`: everything that can be known without tracing.
+
+use serde::Serialize;
+
+use crate::error::Diagnostic;
+use crate::geometry::Shape;
+use crate::scene::{Scene, requires::requirements};
+
+use super::{CheckArgs, exit, fail, print, render, warn};
+
+#[derive(Debug, Serialize)]
+struct Check {
+    ok: bool,
+    requires: Vec<&'static str>,
+    surfaces: Vec<SurfaceCheck>,
+    emitters: Vec<EmitterCheck>,
+    receivers: Vec<ReceiverCheck>,
+    memory_mb: f64,
+    warnings: Vec<String>,
+    errors: Vec<ErrorCheck>,
+}
+
+#[derive(Debug, Serialize)]
+struct SurfaceCheck {
+    name: String,
+    triangles: usize,
+    open_edges: usize,
+    closed: bool,
+    area_m2: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct EmitterCheck {
+    name: String,
+    flux_emitted_lm: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ReceiverCheck {
+    name: String,
+    cells: usize,
+    area_m2: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ErrorCheck {
+    file: Option<String>,
+    line: Option<usize>,
+    column: Option<usize>,
+    found: String,
+    required: String,
+}
+
+impl Check {
+    fn of_scene(scene: &Scene) -> Self {
+        let surfaces = scene.geometry.surfaces().iter().map(|s| {
+            let (triangles, open_edges) = match &s.shape {
+                Shape::Mesh(mesh) => (mesh.triangles().len(), mesh.topology().open_edges),
+                // A rectangle is two triangles with four free edges; exact shapes have no triangles.
+                Shape::Rectangle(_) => (2, 4),
+                Shape::Sphere(_) => (0, 0),
+                Shape::Paraboloid(_) => (0, 1),
+            };
+            SurfaceCheck {
+                name: s.name.clone(),
+                triangles,
+                open_edges,
+                closed: s.shape.is_closed(),
+                area_m2: s.shape.area(),
+            }
+        });
+        let emitters = scene.emitter_names.iter().zip(scene.emitters.as_slice());
+        // Sums of a run: counters of one replicate, sum and sum of squares over replicates.
+        let per_cell = 2 * size_of::<u64>() + size_of::<u128>();
+        let cells: usize = scene.receivers.iter().map(|r| r.cells.len()).sum();
+        Self {
+            ok: true,
+            requires: requirements(scene),
+            surfaces: surfaces.collect(),
+            emitters: emitters
+                .map(|(name, e)| EmitterCheck { name: name.clone(), flux_emitted_lm: e.flux_lm() })
+                .collect(),
+            receivers: scene
+                .receivers
+                .iter()
+                .map(|r| ReceiverCheck {
+                    name: r.name.clone(),
+                    cells: r.cells.len(),
+                    area_m2: r.total_area_m2(),
+                })
+                .collect(),
+            memory_mb: (scene.memory_bytes() + cells * per_cell) as f64 / 1e6,
+            warnings: scene.warnings.iter().map(ToString::to_string).collect(),
+            errors: Vec::new(),
+        }
+    }
+
+    fn of_errors(errors: &[Diagnostic]) -> Self {
+        let place = |e: &Diagnostic| ErrorCheck {
+            file: e.file().map(str::to_string),
+            line: e.line(),
+            column: e.column(),
+            found: e.found().to_string(),
+            required: e.required().to_string(),
+        };
+        Self {
+            ok: false,
+            requires: Vec::new(),
+            surfaces: Vec::new(),
+            emitters: Vec::new(),
+            receivers: Vec::new(),
+            memory_mb: 0.0,
+            warnings: Vec::new(),
+            errors: errors.iter().map(place).collect(),
+        }
+    }
+
+    fn text(&self, name: &str) -> String {
+        let mut out = format!("{name}: ready to trace\n\nrequires   {}\n", self.requires.join(", "));
+        for e in &self.emitters {
+            out += &format!("emitter    {}: {} lm\n", e.name, crate::report::text::digits(e.flux_emitted_lm));
+        }
+        for s in &self.surfaces {
+            let edges = match (s.triangles, s.open_edges) {
+                (0, _) => "exact".to_string(),
+                (n, 0) => format!("{n} triangles, closed"),
+                (n, open) => format!("{n} triangles, {open} open edges"),
+            };
+            out += &format!("surface    {}: {edges}, {} m2\n", s.name, crate::report::text::digits(s.area_m2));
+        }
+        for r in &self.receivers {
+            out += &format!(
+                "receiver   {}: {} cells, {} m2\n",
+                r.name,
+                r.cells,
+                crate::report::text::digits(r.area_m2)
+            );
+        }
+        out + &format!("memory     {:.1} MB\n", self.memory_mb)
+    }
+}
+
+/// Runs the subcommand; the exit code.
+pub fn run(args: &CheckArgs) -> u8 {
+    match render::load(args.scene.as_deref()) {
+        Ok((scene, _)) => {
+            let check = Check::of_scene(&scene);
+            if args.json {
+                print_json(&check);
+            } else {
+                warn(&scene.warnings);
+                print(&check.text(&scene.identity.name));
+            }
+            exit::DONE
+        }
+        Err(errors) => {
+            if args.json {
+                print_json(&Check::of_errors(&errors));
+                return exit::WRONG;
+            }
+            fail(&errors)
+        }
+    }
+}
+
+fn print_json(check: &Check) {
+    match serde_json::to_string_pretty(check) {
+        Ok(text) => print(&(text + "\n")),
+        Err(e) => super::say(&format!("error: {e}")),
+    }
+}

@@ -1,0 +1,203 @@
+//! `caustix render`: trace a scene, write its maps, say what was found.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::image::atomic::write_atomically;
+use crate::report::statistics::ReceiverStatistics;
+use crate::report::{Report, maps, text};
+use crate::run::{Outcome, Plan, Settings, StoppedBy, Variant, trace};
+use crate::scene::description::{Description, RunDescription};
+use crate::scene::{Scene, build, file};
+use crate::sequence::Sequence;
+
+use super::{RenderArgs, count, exit, fail, not_available, print, say, warn};
+
+/// Set by the first Ctrl-C; the second ends the process at once.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Reads and builds a scene; without a path the built-in one.
+pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDescription), Vec<Diagnostic>> {
+    let description = match path {
+        Some(path) => file::read(path)?,
+        None => Description::built_in()?,
+    };
+    let run = description.run;
+    Ok((build::build(&description)?, run))
+}
+
+/// Runs the subcommand; the exit code.
+pub fn run(args: &RenderArgs) -> u8 {
+    let later = [("--error", args.error.is_some()), ("--time", args.time.is_some()), ("--resume", args.resume)];
+    if let Some((flag, _)) = later.iter().find(|(_, asked)| *asked) {
+        return not_available(flag);
+    }
+    let variant = match args.variant.as_deref() {
+        Some(name @ ("mc" | "qmc")) => return not_available(&format!("--variant {name}")),
+        name => name,
+    };
+    let started = Instant::now();
+    match render(args, variant, started) {
+        Ok(code) => code,
+        Err(errors) => fail(&errors),
+    }
+}
+
+fn render(
+    args: &RenderArgs,
+    variant: Option<&str>,
+    started: Instant,
+) -> std::result::Result<u8, Vec<Diagnostic>> {
+    let one = |e: Diagnostic| vec![e];
+    let (scene, run) = load(args.scene.as_deref())?;
+    warn(&scene.warnings);
+    let plan = plan(args, variant, &run).map_err(one)?;
+    // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
+    make_directory(&args.output).map_err(one)?;
+    say_rounding(args, &plan);
+    catch_interrupts();
+    let outcome = traced(args, &scene, &plan).map_err(one)?;
+    let directory = destination(&args.output, &outcome).map_err(one)?;
+    let statistics: Vec<_> = scene
+        .receivers
+        .iter()
+        .enumerate()
+        .map(|(i, receiver)| ReceiverStatistics::new(&outcome, receiver, i))
+        .collect();
+    let mut files = Vec::new();
+    for (receiver, s) in scene.receivers.iter().zip(&statistics) {
+        files.push(maps::write_receiver(&directory, &scene, &outcome, receiver, s).map_err(one)?);
+    }
+    let total_s = started.elapsed().as_secs_f64();
+    let report = Report::new(&scene, &outcome, &statistics, &files, total_s);
+    write_report(&directory.join("report.json"), &report).map_err(one)?;
+    if !args.quiet {
+        print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
+        print(&format!("written to {}\n", directory.display()));
+    }
+    if outcome.stopped_by == StoppedBy::Interrupt {
+        say(&format!(
+            "caustix: interrupted after {} of {} photons; what there is was written to {}",
+            text::grouped(outcome.photons),
+            text::grouped(plan.photons()),
+            directory.display()
+        ));
+        return Ok(exit::INTERRUPTED);
+    }
+    Ok(exit::DONE)
+}
+
+/// The command line where it speaks, else the scene's [run], else the defaults.
+fn plan(args: &RenderArgs, variant: Option<&str>, run: &RunDescription) -> Result<Plan> {
+    let mut settings = Settings::default();
+    settings.photons = count("--photons", args.photons.as_ref())?.or(run.photons.map(|p| p.value));
+    settings.seed = args.seed.or(run.seed.map(|p| p.value)).unwrap_or(settings.seed);
+    let unknown = |option: &str, name: &str, known: Vec<&str>| {
+        Diagnostic::new(Kind::Unknown, format!("{option} {name}"), format!("one of: {}", known.join(", ")))
+    };
+    if let Some(name) = variant {
+        let names = || Variant::ALL.iter().map(|v| v.name()).collect();
+        settings.variant = Variant::ALL
+            .into_iter()
+            .find(|v| v.name() == name)
+            .ok_or_else(|| unknown("--variant", name, names()))?;
+    }
+    if let Some(name) = args.sequence.as_deref() {
+        let names = || Sequence::ALL.iter().map(|s| s.name()).collect();
+        settings.sequence =
+            Sequence::from_name(name).ok_or_else(|| unknown("--sequence", name, names()))?;
+    }
+    // A scene's replicates yield to a sequence that can have only one; the command line's do not.
+    let of_scene = run.replicates.map(|p| p.value).filter(|_| settings.sequence.is_randomised());
+    settings.replicates = args.replicates.or(of_scene);
+    Plan::new(&settings)
+}
+
+fn say_rounding(args: &RenderArgs, plan: &Plan) {
+    let asked = args.photons.as_ref().and_then(|t| crate::scene::count::parse_count(t).ok());
+    if let Some(asked) = asked.filter(|n| *n != plan.photons()) {
+        say(&format!(
+            "caustix: {} photons instead of {}: {} replicates of equal size",
+            text::grouped(plan.photons()),
+            text::grouped(asked),
+            plan.replicates
+        ));
+    }
+}
+
+fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Outcome> {
+    let threads = args.threads.unwrap_or(0);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|e| Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started"))?;
+    let bar = progress_bar(args.quiet, plan);
+    let outcome = pool.install(|| trace(scene, plan, &INTERRUPTED, &|photons| bar.inc(photons)));
+    bar.finish_and_clear();
+    outcome
+}
+
+fn progress_bar(quiet: bool, plan: &Plan) -> ProgressBar {
+    let visible = !quiet && std::io::stderr().is_terminal();
+    let target = if visible { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(plan.photons()), target);
+    let template = "tracing {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
+}
+
+fn catch_interrupts() {
+    let handler = || {
+        if INTERRUPTED.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(exit::INTERRUPTED));
+        }
+    };
+    // Fails only where a handler is set already; then Ctrl-C does what that one does.
+    if ctrlc::set_handler(handler).is_err() {
+        say("caustix: Ctrl-C cannot be caught here; it will end the run without results");
+    }
+}
+
+fn make_directory(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path).map_err(|e| {
+        Diagnostic::new(Kind::Io, format!("\"{e}\" while making the directory"), "a directory for the results")
+            .in_file(path)
+    })
+}
+
+/// Where the results go: the directory that was asked for, but for an interrupted run that would replace the results
+/// of a longer one there: its results go into `interrupted/` beside them.
+fn destination(output: &Path, outcome: &Outcome) -> Result<PathBuf> {
+    if outcome.stopped_by == StoppedBy::Photons {
+        return Ok(output.to_path_buf());
+    }
+    let earlier = std::fs::read_to_string(output.join("report.json"))
+        .ok()
+        .and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok())
+        .and_then(|report| report.get("photons").and_then(serde_json::Value::as_u64));
+    if earlier.is_some_and(|photons| photons > outcome.photons) {
+        let beside = output.join("interrupted");
+        make_directory(&beside)?;
+        return Ok(beside);
+    }
+    Ok(output.to_path_buf())
+}
+
+fn write_report(path: &Path, report: &Report) -> Result<()> {
+    let text = serde_json::to_string_pretty(report).map_err(|e| {
+        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing the report"), "a report in JSON").in_file(path)
+    })?;
+    write_atomically(path, |out| {
+        use std::io::Write;
+        out.write_all(text.as_bytes())?;
+        out.write_all(b"\n")
+    })
+}

@@ -1,0 +1,78 @@
+//! What an EXR says about its run: everything needed to repeat it, and nothing that a repetition would change (no time,
+//! thread count, path or date).
+
+use crate::image::exr::Value;
+use crate::run::Outcome;
+use crate::scene::Scene;
+use crate::scene::description::{ReceiverEvents, ReceiverSide};
+use crate::scene::receiver::{Cells, Receiver};
+
+use super::json::why_no_error;
+use super::statistics::ReceiverStatistics;
+
+/// Attributes of one receiver's map.
+pub fn attributes(
+    scene: &Scene,
+    outcome: &Outcome,
+    receiver: &Receiver,
+    statistics: &ReceiverStatistics,
+) -> Vec<(String, Value)> {
+    let mut all = Vec::new();
+    let mut text = |name: &str, value: &str| all.push((name.to_string(), Value::Text(value.to_string())));
+    text("caustix.version", env!("CARGO_PKG_VERSION"));
+    text("caustix.quantity", "illuminance: flux arriving before the event, per cell area");
+    text("caustix.unit.illuminance", "lx");
+    text("caustix.unit.standard_error", "lx");
+    text("caustix.unit.hits", "photons");
+    text("caustix.receiver", &receiver.name);
+    text("caustix.surface", &scene.geometry.surfaces()[receiver.surface.0 as usize].name);
+    text(
+        "caustix.side",
+        match receiver.side {
+            ReceiverSide::Front => "front",
+            ReceiverSide::Back => "back",
+            ReceiverSide::Both => "both",
+        },
+    );
+    text(
+        "caustix.events",
+        match receiver.events {
+            ReceiverEvents::All => "all",
+            ReceiverEvents::Direct => "direct",
+            ReceiverEvents::Indirect => "indirect",
+        },
+    );
+    text(
+        "caustix.layout",
+        match receiver.cells {
+            Cells::Grid { .. } => "row 0, column 0 is the (u = 0, v = 1) corner; u to the right",
+            Cells::Faces { .. } => "face number = row * width + column; NaN beyond the last face",
+        },
+    );
+    text("caustix.variant", outcome.plan.variant.name());
+    text("caustix.sequence", outcome.plan.sequence.name());
+    text("caustix.seed", &outcome.plan.seed.to_string());
+    text("caustix.photons", &outcome.photons.to_string());
+    text("caustix.replicates", &outcome.replicates.to_string());
+    if let Some(why) = why_no_error(outcome) {
+        text("caustix.standard_error_absent", why);
+    }
+    text("caustix.scene.sha256", &scene.identity.sha256);
+    text("caustix.scene.text", &scene.identity.text);
+    for (i, (file, sha256)) in scene.identity.files.iter().enumerate() {
+        text(&format!("caustix.scene.file{i}"), &format!("{sha256}  {file}"));
+    }
+    let mut number = |name: &str, value: f64| all.push((name.to_string(), Value::F64(value)));
+    number("caustix.emitted_lm", scene.emitters.flux_lm());
+    number("caustix.flux_lm", statistics.flux_lm.value);
+    if let Some(error) = statistics.flux_lm.standard_error {
+        number("caustix.flux_standard_error_lm", error);
+    }
+    number("caustix.area_m2", statistics.area_m2);
+    number("caustix.mean_lx", statistics.mean_lx);
+    if let Some([width, height]) = receiver.size_m {
+        number("caustix.width_m", width);
+        number("caustix.height_m", height);
+    }
+    all
+}

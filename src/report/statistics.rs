@@ -1,0 +1,65 @@
+//! Numbers of one receiver: flux, least, mean and greatest illuminance, uniformity, typical error of a cell.
+
+use crate::run::{Estimate, Outcome};
+use crate::scene::receiver::Receiver;
+
+/// A receiver's map in lux, and the numbers that sum it up.
+#[derive(Debug, Clone)]
+pub struct ReceiverStatistics {
+    /// Illuminance of every cell, lx, row by row from the top left or face by face.
+    pub illuminance_lx: Vec<f64>,
+    /// Standard error of every cell, lx; NaN where one replicate leaves it unknown.
+    pub standard_error_lx: Vec<f64>,
+    /// Photons counted in every cell.
+    pub hits: Vec<u64>,
+    /// Flux that arrived, lm.
+    pub flux_lm: Estimate,
+    /// Area of all cells, m2.
+    pub area_m2: f64,
+    /// Least illuminance of a cell, lx.
+    pub min_lx: f64,
+    /// Flux over area, lx.
+    pub mean_lx: f64,
+    /// Greatest illuminance of a cell, lx.
+    pub max_lx: f64,
+    /// U0 = min / mean; `None` where nothing arrived.
+    pub uniformity_u0: Option<f64>,
+    /// sqrt(area-weighted mean of the squared standard errors of the cells) / mean illuminance: what nRMS to expect against the truth.
+    pub expected_nrms: Option<f64>,
+}
+
+impl ReceiverStatistics {
+    /// The numbers of receiver number `index`.
+    pub fn new(outcome: &Outcome, receiver: &Receiver, index: usize) -> Self {
+        let n = receiver.cells.len();
+        let mut illuminance_lx = Vec::with_capacity(n);
+        let mut standard_error_lx = Vec::with_capacity(n);
+        let mut variance = 0.0;
+        for cell in 0..n {
+            let area = receiver.area_m2(cell);
+            let estimate = outcome.illuminance_lx(index, cell, area);
+            let error = estimate.standard_error.unwrap_or(f64::NAN);
+            variance += area * error * error;
+            illuminance_lx.push(estimate.value);
+            standard_error_lx.push(error);
+        }
+        let flux_lm = outcome.receiver_flux_lm(index);
+        let area_m2 = receiver.total_area_m2();
+        let mean_lx = flux_lm.value / area_m2;
+        let min_lx = illuminance_lx.iter().copied().fold(f64::INFINITY, f64::min);
+        let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
+        let lit = mean_lx > 0.0;
+        Self {
+            hits: outcome.cells[index].sum.clone(),
+            flux_lm,
+            area_m2,
+            min_lx,
+            mean_lx,
+            max_lx,
+            uniformity_u0: lit.then(|| min_lx / mean_lx),
+            expected_nrms: (lit && outcome.replicates > 1).then(|| (variance / area_m2).sqrt() / mean_lx),
+            illuminance_lx,
+            standard_error_lx,
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! What a scene requires: only that machinery runs (METHOD: "model only what a scene requires").
+//!
+//! What is not in the list costs nothing: no storage and no branch in the inner loop. Today nothing that a scene can
+//! name needs stored photons, wavelengths, weights or a camera, so none of those exists.
+
+use crate::bsdf::Bsdf;
+use crate::emitter::Emitter;
+use crate::geometry::Shape;
+
+use super::Scene;
+use super::receiver::Cells;
+
+/// The machinery this scene needs, each word once, in a fixed order.
+pub fn requirements(scene: &Scene) -> Vec<&'static str> {
+    let emitters = scene.emitters.as_slice();
+    let surfaces = scene.geometry.surfaces();
+    let emitter = |test: fn(&Emitter) -> bool| emitters.iter().any(test);
+    let bsdf = |test: fn(&Bsdf) -> bool| scene.bsdfs().iter().any(test);
+    let shape = |test: fn(&Shape) -> bool| surfaces.iter().any(|s| test(&s.shape));
+    let cells = |test: fn(&Cells) -> bool| scene.receivers.iter().any(|r| test(&r.cells));
+    let specular = bsdf(|b| matches!(b, Bsdf::Dielectric(_) | Bsdf::Mirror { .. }));
+    [
+        ("photometric table", emitter(|e| matches!(e, Emitter::Photometric(_)))),
+        ("isotropic emission", emitter(|e| matches!(e, Emitter::Isotropic(_)))),
+        ("collimated emission", emitter(|e| matches!(e, Emitter::Collimated(_)))),
+        ("choice of emitter", emitters.len() > 1),
+        ("triangles", shape(|s| matches!(s, Shape::Mesh(_) | Shape::Rectangle(_)))),
+        ("exact shapes", shape(|s| matches!(s, Shape::Sphere(_) | Shape::Paraboloid(_)))),
+        ("smooth normals", specular && shape(|s| matches!(s, Shape::Mesh(m) if m.is_smooth()))),
+        ("refraction", bsdf(|b| matches!(b, Bsdf::Dielectric(_)))),
+        ("mirror reflection", bsdf(|b| matches!(b, Bsdf::Mirror { .. }))),
+        ("diffuse scattering", bsdf(|b| matches!(b, Bsdf::Lambertian { reflectance } if *reflectance > 0.0))),
+        ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
+        ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),
+    ]
+    .into_iter()
+    .filter_map(|(word, required)| required.then_some(word))
+    .collect()
+}
