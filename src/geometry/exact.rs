@@ -1,0 +1,93 @@
+//! The exact sign of a 2 x 2 determinant, the one predicate on which watertightness rests.
+//!
+//! Rounding is monotonic: fl(ab) > fl(cd) implies ab > cd. Only equal rounded products leave the sign open, and those
+//! are compared as integers (53-bit mantissas, 106-bit products in `i128`), which neither rounds nor underflows and
+//! gives the same bits on every machine.
+
+/// `a b - c d` with the sign of the exact value; the magnitude is the ordinary rounded difference.
+///
+/// Zero is returned only for an exact zero. Arguments must be finite and their products must not overflow.
+#[inline(always)]
+pub(crate) fn signed_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (p, q) = (a * b, c * d);
+    if p != q { p - q } else { exact_difference(a, b, c, d) }
+}
+
+/// `a b - c d` rounded once from the exact value (never to zero unless the exact value is zero).
+#[cold]
+#[inline(never)]
+pub(crate) fn exact_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (p, p_exponent) = product(a, b);
+    let (q, q_exponent) = product(c, d);
+    if p == 0 {
+        return scale(-q, q_exponent);
+    }
+    if q == 0 {
+        return scale(p, p_exponent);
+    }
+    // Mantissas are normalised to 53 bits, so products lie in [2^104, 2^106): beyond a shift of 20 the smaller one
+    // is below the last bit kept of the larger, and below it 106 + 20 + 1 bits fit an i128.
+    match p_exponent - q_exponent {
+        shift @ 0..=20 => scale((p << shift) - q, q_exponent),
+        shift @ -20..0 => scale(p - (q << -shift), p_exponent),
+        shift if shift > 0 => scale(p, p_exponent),
+        _ => scale(-q, q_exponent),
+    }
+}
+
+/// The product of two finite numbers as integer times power of two, exactly.
+fn product(a: f64, b: f64) -> (i128, i32) {
+    let (m, e) = decompose(a);
+    let (n, f) = decompose(b);
+    (i128::from(m) * i128::from(n), e + f)
+}
+
+/// A finite number as a signed 53-bit integer (normalised unless zero) and a power of two.
+fn decompose(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let biased = ((bits >> 52) & 0x7ff) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    if biased == 0 && fraction == 0 {
+        return (0, 0);
+    }
+    let (mantissa, exponent) = if biased == 0 {
+        let shift = fraction.leading_zeros() as i32 - 11;
+        (fraction << shift, -1074 - shift)
+    } else {
+        (fraction | (1 << 52), biased - 1075)
+    };
+    (if x < 0.0 { -mantissa } else { mantissa }, exponent)
+}
+
+/// `m 2^e`, of the sign of `m` even where the value itself would underflow.
+fn scale(m: i128, exponent: i32) -> f64 {
+    let value = libm::scalbn(m as f64, exponent);
+    if value == 0.0 && m != 0 { f64::MIN_POSITIVE.copysign(m as f64) } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sign_is_exact_where_rounded_products_agree() {
+        let e = f64::EPSILON;
+        // (1 + e)(1 - e) = 1 - e^2, rounded 1.
+        assert_eq!(
+            (1.0 + e) * (1.0 - e / 2.0) - 1.0 * (1.0 + e / 2.0),
+            signed_difference(1.0 + e, 1.0 - e / 2.0, 1.0, 1.0 + e / 2.0)
+        );
+        assert_eq!(signed_difference(1.0 + e, 1.0 - e, 1.0, 1.0), -e * e);
+        assert_eq!(signed_difference(1.0, 1.0, 1.0 + e, 1.0 - e), e * e);
+        assert_eq!(signed_difference(3.0, 7.0, -7.0, -3.0), 0.0);
+        assert_eq!(signed_difference(0.0, 5.0, 0.0, -3.0), 0.0);
+    }
+
+    #[test]
+    fn products_that_underflow_keep_their_sign() {
+        assert!(signed_difference(1e-200, 1e-200, 0.0, 1.0) > 0.0);
+        assert!(signed_difference(1e-200, 1e-200, 1e-200, 2e-200) < 0.0);
+        assert!(signed_difference(5e-324, 5e-324, 5e-324, -5e-324) > 0.0);
+        assert!(signed_difference(1e-300, 1e-10, 1e-300, -1e-30) > 0.0);
+    }
+}

@@ -1,0 +1,382 @@
+//! The nearest hit: what a candidate must satisfy, and which of several is it.
+
+use glam::DVec3;
+
+use super::ray::Ray;
+use super::sphere::Root;
+use super::triangle::{Block, Crossing, View, coordinate_error};
+use super::whereabouts::Verdict;
+use super::wide::{BoxRay, Visitor};
+use super::{Geometry, Hit, Shape, SurfaceId, Whereabouts};
+
+/// A candidate that is nearest so far.
+#[derive(Debug, Clone, Copy)]
+struct Best {
+    t: f64,
+    rank: u32,
+    primitive: u32,
+    surface: u32,
+    crossing: Crossing,
+}
+
+/// Distances of skipped candidates, kept until it is known which of them lie before the hit.
+struct Skipped {
+    t: [f64; 16],
+    len: usize,
+    surely: u64,
+}
+
+impl Skipped {
+    fn push(&mut self, t: f64, limit: f64) {
+        if self.len == self.t.len() {
+            let mut kept = 0;
+            for i in 0..self.len {
+                if self.t[i] < limit {
+                    self.t[kept] = self.t[i];
+                    kept += 1;
+                }
+            }
+            self.len = kept;
+        }
+        match self.t.get_mut(self.len) {
+            Some(place) => {
+                *place = t;
+                self.len += 1;
+            }
+            None => self.surely += 1,
+        }
+    }
+
+    fn before(&self, t: f64) -> u64 {
+        self.surely + self.t[..self.len].iter().filter(|&&s| s < t).count() as u64
+    }
+}
+
+/// A search along one ray. `LENIENT`: only the far sides of closed surfaces the photon is behind, edges widened by
+/// their rounding.
+struct Search<'a, const LENIENT: bool> {
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    boxes: Option<&'a BoxRay>,
+    at: &'a Whereabouts,
+    only: Option<SurfaceId>,
+    best: Option<Best>,
+    nearest_t: f64,
+    limit: f32,
+    skipped: Skipped,
+}
+
+impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
+    fn new(geometry: &'a Geometry, ray: &'a Ray, at: &'a Whereabouts, only: Option<SurfaceId>) -> Self {
+        Self {
+            geometry,
+            ray,
+            boxes: None,
+            at,
+            only,
+            best: None,
+            nearest_t: f64::INFINITY,
+            limit: f32::INFINITY,
+            skipped: Skipped { t: [0.0; 16], len: 0, surely: 0 },
+        }
+    }
+
+    /// Judges a crossing at `crossing.t`; `bound` is asked for only near the origin.
+    #[inline(always)]
+    fn consider(&mut self, primitive: u32, surface: u32, crossing: Crossing, bound: impl FnOnce() -> f64) {
+        let t = crossing.t;
+        let cap = self.geometry.bound_cap;
+        let info = &self.geometry.info[surface as usize];
+        if !(t >= -cap && t <= self.nearest_t) {
+            return;
+        }
+        let mut here = false;
+        if t <= cap {
+            let bound = bound().min(cap);
+            if t < -bound {
+                return;
+            }
+            here = t <= bound;
+        }
+        let verdict = self.at.judge(SurfaceId(surface), info.closed, crossing.front, here);
+        if verdict == Verdict::Contradicts {
+            self.skipped.push(t, self.nearest_t);
+            return;
+        }
+        let t = t.max(0.0);
+        let first = match &self.best {
+            Some(b) => (t, info.rank, primitive) < (b.t, b.rank, b.primitive),
+            None => true,
+        };
+        if first {
+            self.best = Some(Best { t, rank: info.rank, primitive, surface, crossing });
+            self.nearest_t = t;
+            if let Some(boxes) = self.boxes {
+                self.limit = boxes.limit(t);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, block: &Block, lane: usize) {
+        let (primitive, surface) = (block.primitive[lane], block.surface[lane]);
+        let corners = block.triangle(lane);
+        let view = View::new(&corners, self.ray);
+        if LENIENT {
+            self.lenient_triangle(&corners, &view, primitive, surface);
+            return;
+        }
+        let Some(crossing) = view.crossing() else { return };
+        if self.at.has_met(primitive) {
+            return;
+        }
+        let ray = self.ray;
+        self.consider(primitive, surface, crossing, || view.bound(ray, coordinate_error(&corners, ray)));
+    }
+
+    #[cold]
+    fn lenient_triangle(&mut self, corners: &[[f64; 3]; 3], view: &View, primitive: u32, surface: u32) {
+        let error = coordinate_error(corners, self.ray);
+        let Some(crossing) = view.lenient_crossing(error) else { return };
+        if crossing.front || self.at.has_met(primitive) {
+            return;
+        }
+        let ray = self.ray;
+        self.consider(primitive, surface, crossing, || view.bound(ray, error));
+    }
+
+    #[inline(never)]
+    fn analytic(&mut self, primitive: u32, surface: u32) {
+        let on = self.at.has_met(primitive);
+        let none = [None, None];
+        let roots: [Option<Root>; 2] = match &self.geometry.surfaces[surface as usize].shape {
+            Shape::Sphere(s) if LENIENT => [Some(s.exit(self.ray)), None],
+            Shape::Sphere(s) => s.roots(self.ray, on),
+            Shape::Paraboloid(p) if !LENIENT => p.roots(self.ray, on),
+            Shape::Paraboloid(_) | Shape::Mesh(_) | Shape::Rectangle(_) => none,
+        };
+        for root in roots.into_iter().flatten() {
+            let crossing = Crossing { t: root.t, weights: [0.0; 2], front: root.front };
+            self.consider(primitive, surface, crossing, || root.bound);
+        }
+    }
+
+    /// All primitives of a block that the ray may meet.
+    #[inline(always)]
+    fn block(&mut self, block: &Block) {
+        let mut mask = if LENIENT { (1 << block.count) - 1 } else { block.candidates(self.ray) };
+        while mask != 0 {
+            let lane = mask.trailing_zeros() as usize & 3;
+            mask &= mask - 1;
+            let surface = SurfaceId(block.surface[lane]);
+            if self.only.is_some_and(|s| s != surface) || (LENIENT && !self.at.is_behind(surface)) {
+                continue;
+            }
+            if block.analytic >> lane & 1 == 1 {
+                self.analytic(block.primitive[lane], surface.0);
+            } else {
+                self.triangle(block, lane);
+            }
+        }
+    }
+}
+
+impl<const LENIENT: bool> Visitor for Search<'_, LENIENT> {
+    #[inline(always)]
+    fn leaf(&mut self, block: &Block) {
+        self.block(block);
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.limit
+    }
+}
+
+impl Geometry {
+    /// The nearest hit of a ray from `origin` [m] along the unit vector `direction`.
+    ///
+    /// `at` says where the photon is: primitives just met, the sides it left them on, the closed surfaces it is
+    /// behind. Candidates that contradict it are the same crossing seen again, or the rounding of a silhouette; those
+    /// before the hit are added to `skipped`. Among equal distances the first by surface name and face number is
+    /// taken, so the answer does not depend on the order of surfaces.
+    ///
+    /// A ray that is behind a closed surface and by rounding misses its far side (it entered at a silhouette) gets the
+    /// nearest far side within rounding; that, too, is counted.
+    #[inline]
+    pub fn nearest(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        at: &Whereabouts,
+        skipped: &mut u64,
+    ) -> Option<Hit> {
+        self.nearest_by(origin, direction, at, skipped, true)
+    }
+
+    /// [`Geometry::nearest`] by trying every primitive: the same bits, slowly. For checking the search structure.
+    pub fn nearest_by_exhaustion(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        at: &Whereabouts,
+        skipped: &mut u64,
+    ) -> Option<Hit> {
+        self.nearest_by(origin, direction, at, skipped, false)
+    }
+
+    #[inline(always)]
+    fn nearest_by(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        at: &Whereabouts,
+        skipped: &mut u64,
+        tree: bool,
+    ) -> Option<Hit> {
+        let ray = Ray::new(origin, direction)?;
+        let mut search = Search::<false>::new(self, &ray, at, None);
+        self.run(&mut search, tree);
+        *skipped += search.skipped.before(search.nearest_t);
+        let mut best = search.best;
+        if !at.behind().is_empty() {
+            best = self.not_through_the_rim(best, &ray, at, skipped, tree);
+        }
+        best.map(|b| self.finish(&b, &ray))
+    }
+
+    /// A photon that has entered a closed surface must leave it: where no exact crossing is left, the far side is
+    /// taken within rounding.
+    #[inline(never)]
+    fn not_through_the_rim(
+        &self,
+        best: Option<Best>,
+        ray: &Ray,
+        at: &Whereabouts,
+        skipped: &mut u64,
+        tree: bool,
+    ) -> Option<Best> {
+        let only = match &best {
+            None => None,
+            Some(b) => {
+                let left = at.surface_left()?;
+                if left.0 == b.surface || !at.is_behind(left) {
+                    return best;
+                }
+                let mut search = Search::<false>::new(self, ray, at, Some(left));
+                self.run(&mut search, tree);
+                if search.best.is_some() {
+                    return best;
+                }
+                Some(left)
+            }
+        };
+        let mut search = Search::<true>::new(self, ray, at, only);
+        self.run(&mut search, tree);
+        match (best, search.best) {
+            (Some(b), Some(s)) if b.t < s.t => best,
+            (_, Some(s)) => {
+                *skipped += 1;
+                Some(s)
+            }
+            (b, None) => b,
+        }
+    }
+
+    #[inline(always)]
+    fn run<'a, const LENIENT: bool>(&'a self, search: &mut Search<'a, LENIENT>, tree: bool) {
+        if !tree {
+            for block in &self.tree.blocks {
+                search.block(block);
+            }
+            return;
+        }
+        let Some(boxes) = BoxRay::new(search.ray, &self.normalisation) else { return };
+        let mut with =
+            Search { boxes: Some(&boxes), ..Search::new(self, search.ray, search.at, search.only) };
+        #[cfg(target_arch = "x86_64")]
+        if self.avx2 {
+            // SAFETY: `avx2` is set only where the processor was found to have it.
+            #[allow(unsafe_code)]
+            unsafe {
+                self.walk_avx2(&boxes, &mut with);
+            }
+            search.take(with);
+            return;
+        }
+        self.walk(&boxes, &mut with);
+        search.take(with);
+    }
+
+    /// The walk compiled for AVX2. No fused operations: the same bits as without.
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn walk_avx2<const LENIENT: bool>(&self, boxes: &BoxRay, search: &mut Search<'_, LENIENT>) {
+        self.walk(boxes, search);
+    }
+
+    /// The stack holds 7 entries a level and one more; the tree's depth picks its size.
+    #[inline(always)]
+    fn walk<const LENIENT: bool>(&self, boxes: &BoxRay, search: &mut Search<'_, LENIENT>) {
+        match self.tree.depth {
+            0..=9 => self.tree.walk::<64, _>(boxes, search),
+            10..=18 => self.tree.walk::<128, _>(boxes, search),
+            _ => self.tree.walk::<512, _>(boxes, search),
+        }
+    }
+
+    /// Position and normals of the chosen candidate.
+    #[inline(always)]
+    fn finish(&self, best: &Best, ray: &Ray) -> Hit {
+        let info = &self.info[best.surface as usize];
+        let shape = &self.surfaces[best.surface as usize].shape;
+        let face = best.primitive - info.first_primitive;
+        let [v, w] = best.crossing.weights;
+        let facing = if best.crossing.front { -ray.direction } else { ray.direction };
+        let flat = |corners: [DVec3; 3]| {
+            let [a, b, c] = corners;
+            let (ab, ac) = (b - a, c - a);
+            let normal = ab.cross(ac).try_normalize().unwrap_or(facing);
+            let arrays = corners.map(|p| p.to_array());
+            let bound = View::new(&arrays, ray).bound(ray, coordinate_error(&arrays, ray));
+            (a + ab * v + ac * w, normal, bound)
+        };
+        let along = ray.origin + ray.direction * best.t;
+        let (position, normal, bound) = match shape {
+            Shape::Mesh(m) => flat(m.triangle(face as usize)),
+            Shape::Rectangle(r) => flat(r.triangle(face as usize)),
+            Shape::Sphere(s) => {
+                let p = s.project(along);
+                (p, s.normal(p), s.exit(ray).bound)
+            }
+            Shape::Paraboloid(p) => {
+                let q = p.project(along);
+                (q, p.normal(q), p.bound(ray))
+            }
+        };
+        let shading_normal = match shape {
+            Shape::Mesh(m) => m.shading_normal(face as usize, [v, w], normal),
+            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Paraboloid(_) => normal,
+        };
+        Hit {
+            t: best.t,
+            t_bound: bound.min(self.bound_cap),
+            position,
+            surface: SurfaceId(best.surface),
+            primitive: best.primitive,
+            face,
+            normal,
+            shading_normal,
+            front: best.crossing.front,
+            closed: info.closed,
+        }
+    }
+}
+
+impl<const LENIENT: bool> Search<'_, LENIENT> {
+    fn take(&mut self, other: Search<'_, LENIENT>) {
+        self.best = other.best;
+        self.nearest_t = other.nearest_t;
+        self.skipped = other.skipped;
+    }
+}

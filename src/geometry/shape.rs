@@ -1,0 +1,115 @@
+//! The closed set of shapes.
+
+use glam::DVec3;
+
+use super::{Mesh, Paraboloid, Rectangle, Sphere, Transform};
+use crate::error::Result;
+
+/// A shape in world space. Triangles where there is no formula, exact where there is one.
+#[derive(Debug, Clone)]
+pub enum Shape {
+    /// Triangles.
+    Mesh(Mesh),
+    /// A flat rectangle.
+    Rectangle(Rectangle),
+    /// An exact sphere.
+    Sphere(Sphere),
+    /// An exact paraboloid of revolution, clipped at its rim.
+    Paraboloid(Paraboloid),
+}
+
+impl Shape {
+    /// Number of faces: triangles of a mesh, 2 for a rectangle, 1 for an exact shape.
+    pub fn face_count(&self) -> usize {
+        match self {
+            Self::Mesh(m) => m.triangles().len(),
+            Self::Rectangle(_) => 2,
+            Self::Sphere(_) | Self::Paraboloid(_) => 1,
+        }
+    }
+
+    /// Whether the shape has an inside.
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Mesh(m) => m.topology().is_closed(),
+            Self::Sphere(_) => true,
+            Self::Rectangle(_) | Self::Paraboloid(_) => false,
+        }
+    }
+
+    /// Area [m2].
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Mesh(m) => m.area(),
+            Self::Rectangle(r) => r.area(),
+            Self::Sphere(s) => s.area(),
+            Self::Paraboloid(p) => p.area(),
+        }
+    }
+
+    /// Area of every face [m2], by face number.
+    pub fn face_areas(&self) -> Vec<f64> {
+        match self {
+            Self::Mesh(m) => (0..m.triangles().len()).map(|i| m.face_area(i)).collect(),
+            Self::Rectangle(r) => vec![0.5 * r.area(); 2],
+            Self::Sphere(s) => vec![s.area()],
+            Self::Paraboloid(p) => vec![p.area()],
+        }
+    }
+
+    /// Surface coordinates in `[0, 1] x [0, 1]` in which equal areas are equal areas; `None` for a mesh.
+    pub fn uv(&self, position: DVec3) -> Option<(f64, f64)> {
+        match self {
+            Self::Mesh(_) => None,
+            Self::Rectangle(r) => Some(r.uv(position)),
+            Self::Sphere(s) => Some(s.uv(position)),
+            Self::Paraboloid(p) => Some(p.uv(position)),
+        }
+    }
+
+    /// The shape, moved.
+    ///
+    /// # Errors
+    /// An exact shape under a non-uniform scale, a rectangle that the scale makes oblique, coordinates out of range.
+    pub fn transformed(&self, by: &Transform) -> Result<Self> {
+        Ok(match self {
+            Self::Mesh(m) => Self::Mesh(m.transformed(by)?),
+            Self::Rectangle(r) => Self::Rectangle(r.transformed(by)?),
+            Self::Sphere(s) => Self::Sphere(s.transformed(by)?),
+            Self::Paraboloid(p) => Self::Paraboloid(p.transformed(by)?),
+        })
+    }
+
+    /// Corners of a face, right-handed about the outward normal; `None` for an exact shape.
+    pub fn triangle(&self, face: usize) -> Option<[DVec3; 3]> {
+        match self {
+            Self::Mesh(m) => Some(m.triangle(face)),
+            Self::Rectangle(r) => Some(r.triangle(face)),
+            Self::Sphere(_) | Self::Paraboloid(_) => None,
+        }
+    }
+
+    /// Least and greatest corner of a face [m].
+    pub(crate) fn face_bounds(&self, face: usize) -> (DVec3, DVec3) {
+        match self {
+            Self::Mesh(m) => bounds_of(&m.triangle(face)),
+            Self::Rectangle(r) => bounds_of(&r.triangle(face)),
+            Self::Sphere(s) => s.bounds(),
+            Self::Paraboloid(p) => p.bounds(),
+        }
+    }
+
+    /// Bytes held.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        size_of::<Self>()
+            + match self {
+                Self::Mesh(m) => m.memory_bytes(),
+                Self::Rectangle(_) | Self::Sphere(_) | Self::Paraboloid(_) => 0,
+            }
+    }
+}
+
+fn bounds_of(corners: &[DVec3; 3]) -> (DVec3, DVec3) {
+    let [a, b, c] = *corners;
+    (a.min(b).min(c), a.max(b).max(c))
+}

@@ -1,0 +1,288 @@
+//! The 8-wide tree that rays walk: boxes of eight children side by side, leaves of up to four primitives inline.
+//!
+//! Boxes live in normalised coordinates, q = (p - centre) * scale with the scale a power of two, so that a scene and
+//! the same scene times a power of two have the same tree bit for bit.
+
+use glam::DVec3;
+
+use super::bvh::{BinaryTree, Bounds};
+use super::ray::Ray;
+use super::triangle::Block;
+
+/// Children of a wide node.
+const WIDTH: usize = 8;
+/// Child code: this bit set means a leaf, the rest is its block.
+pub(crate) const LEAF: u32 = 1 << 31;
+/// Child code of an empty tree.
+pub(crate) const NOTHING: u32 = u32::MAX;
+
+/// Absolute slack of a box test in normalised units (the scene is 1 to 2 units wide): f32 rounding of an origin up to
+/// 4 units away, with room.
+const SLACK: f32 = 1.0 / 1_048_576.0;
+/// Relative slack of a slab distance: three f32 roundings, with room.
+const RELATIVE: f32 = 1.0 / 1_048_576.0;
+
+/// Eight child boxes, `[axis][child]`, and what the children are.
+#[derive(Debug, Clone)]
+#[repr(C, align(32))]
+pub(crate) struct WideNode {
+    lo: [[f32; WIDTH]; 3],
+    hi: [[f32; WIDTH]; 3],
+    child: [u32; WIDTH],
+}
+
+impl WideNode {
+    const EMPTY: Self = Self {
+        lo: [[f32::INFINITY; WIDTH]; 3],
+        hi: [[f32::NEG_INFINITY; WIDTH]; 3],
+        child: [NOTHING; WIDTH],
+    };
+
+    fn set(&mut self, slot: usize, bounds: &Bounds) {
+        for k in 0..3 {
+            self.lo[k][slot] = bounds.lo[k];
+            self.hi[k][slot] = bounds.hi[k];
+        }
+    }
+}
+
+/// From world to normalised coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Normalisation {
+    pub centre: DVec3,
+    pub scale: f64,
+}
+
+impl Normalisation {
+    /// The one of a world box: its largest half extent comes to lie in (1/2, 1].
+    pub fn new(lo: DVec3, hi: DVec3) -> Self {
+        let half = (hi - lo).max_element() * 0.5;
+        let exponent = if half > 0.0 { libm::ilogb(half) + 1 } else { 0 };
+        Self { centre: lo * 0.5 + hi * 0.5, scale: libm::scalbn(1.0, -exponent) }
+    }
+
+    /// The f32 box around a world box, rounded outward.
+    pub fn bounds(&self, lo: DVec3, hi: DVec3) -> Bounds {
+        let (lo, hi) = ((lo - self.centre) * self.scale, (hi - self.centre) * self.scale);
+        Bounds { lo: lo.to_array().map(below), hi: hi.to_array().map(above) }
+    }
+}
+
+/// An f32 below `x` by at least half an ulp: more than f64 rounding can hide.
+fn below(x: f64) -> f32 {
+    let y = x as f32;
+    if f64::from(y) < x { y.next_down() } else { y.next_down().next_down() }
+}
+
+fn above(x: f64) -> f32 {
+    -below(-x)
+}
+
+/// The ray as boxes see it: f32, normalised, its start moved next to the scene.
+pub(crate) struct BoxRay {
+    near_inverse: [f32; 3],
+    far_inverse: [f32; 3],
+    near_origin: [f32; 3],
+    far_origin: [f32; 3],
+    negative: [bool; 3],
+    /// Normalised parameter at which the moved ray starts.
+    start: f64,
+    scale: f64,
+}
+
+impl BoxRay {
+    /// `None` where the ray misses the ball around the scene.
+    #[inline(always)]
+    pub fn new(ray: &Ray, to: &Normalisation) -> Option<Self> {
+        let mut o = (ray.origin - to.centre) * to.scale;
+        let size = o.abs().max_element();
+        let mut start = 0.0;
+        if size > 4.0 {
+            // The scene lies within sqrt(3) < 2 of the centre.
+            let closest = -o.dot(ray.direction);
+            if closest < 0.0 {
+                return None;
+            }
+            start = (closest - 2.0).max(0.0);
+            o += ray.direction * start;
+            if o.length() > 3.0 + 1e-9 * size {
+                return None;
+            }
+        }
+        let slack = SLACK + (size * f64::EPSILON * 16.0) as f32;
+        let o = o.to_array().map(|x| x as f32);
+        let d = ray.direction.to_array();
+        let negative = d.map(|x| x.is_sign_negative());
+        let inverse = d.map(|x| 1.0 / x as f32);
+        let shift = |k: usize, towards: bool| if towards { o[k] + slack } else { o[k] - slack };
+        Some(Self {
+            near_inverse: inverse.map(|x| x * (1.0 - RELATIVE)),
+            far_inverse: inverse.map(|x| x * (1.0 + RELATIVE)),
+            near_origin: std::array::from_fn(|k| shift(k, !negative[k])),
+            far_origin: std::array::from_fn(|k| shift(k, negative[k])),
+            negative,
+            start,
+            scale: to.scale,
+        })
+    }
+
+    /// The normalised distance, rounded up, beyond which no box can hold a hit at `t` metres or nearer.
+    #[inline(always)]
+    pub fn limit(&self, t: f64) -> f32 {
+        let x = (t * self.scale - self.start) as f32;
+        x + x.abs() * RELATIVE + SLACK
+    }
+}
+
+/// The tree.
+#[derive(Debug)]
+pub(crate) struct WideTree {
+    nodes: Vec<WideNode>,
+    pub blocks: Vec<Block>,
+    root: u32,
+    /// Nodes on the longest way down.
+    pub depth: usize,
+}
+
+impl WideTree {
+    /// Collapses a binary tree; `fill` writes a primitive into a lane of a leaf block.
+    pub fn new(binary: &BinaryTree, fill: impl Fn(&mut Block, usize, u32)) -> Self {
+        let mut tree = Self { nodes: Vec::new(), blocks: Vec::new(), root: NOTHING, depth: 0 };
+        if binary.order.is_empty() {
+            return tree;
+        }
+        // (binary node, wide parent and slot, depth)
+        let mut work = vec![(0u32, None::<(usize, usize)>, 1usize)];
+        while let Some((b, parent, depth)) = work.pop() {
+            let node = &binary.nodes[b as usize];
+            let code = if node.count > 0 {
+                let mut block = Block::EMPTY;
+                let range = node.first as usize..(node.first + node.count) as usize;
+                for (lane, &p) in binary.order[range].iter().enumerate() {
+                    fill(&mut block, lane, p);
+                }
+                block.count = node.count;
+                tree.blocks.push(block);
+                LEAF | (tree.blocks.len() - 1) as u32
+            } else {
+                let children = widen(binary, b);
+                let index = tree.nodes.len();
+                let mut wide = WideNode::EMPTY;
+                for (slot, &c) in children.iter().enumerate() {
+                    wide.set(slot, &binary.nodes[c as usize].bounds);
+                }
+                tree.nodes.push(wide);
+                for (slot, &c) in children.iter().enumerate().rev() {
+                    work.push((c, Some((index, slot)), depth + 1));
+                }
+                tree.depth = tree.depth.max(depth);
+                index as u32
+            };
+            match parent {
+                Some((p, slot)) => tree.nodes[p].child[slot] = code,
+                None => tree.root = code,
+            }
+        }
+        tree
+    }
+
+    /// Bytes held.
+    pub fn memory_bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.blocks.as_slice())
+    }
+
+    /// Walks all leaves the ray may touch, nearest boxes first, as long as they begin within the visitor's limit.
+    ///
+    /// `STACK` must be at least `7 depth + 1`: every node popped pushes at most seven.
+    #[inline(always)]
+    pub fn walk<const STACK: usize, V: Visitor>(&self, ray: &BoxRay, visitor: &mut V) {
+        let mut stack = [(0.0f32, 0u32); STACK];
+        let mut top = 0;
+        let mut current = self.root;
+        if current == NOTHING {
+            return;
+        }
+        loop {
+            if current & LEAF != 0 {
+                visitor.leaf(&self.blocks[(current & !LEAF) as usize]);
+            } else {
+                let node = &self.nodes[current as usize];
+                let (near, mut mask) = test(node, ray, visitor.limit());
+                if mask != 0 {
+                    let base = top;
+                    while mask != 0 {
+                        let i = mask.trailing_zeros() as usize & (WIDTH - 1);
+                        mask &= mask - 1;
+                        let entry = (near[i], node.child[i]);
+                        // Insertion from the far end: the nearest comes to lie on top.
+                        let mut j = top;
+                        while j > base && stack[j - 1].0 < entry.0 {
+                            stack[j] = stack[j - 1];
+                            j -= 1;
+                        }
+                        stack[j] = entry;
+                        top += 1;
+                    }
+                }
+            }
+            let limit = visitor.limit();
+            loop {
+                if top == 0 {
+                    return;
+                }
+                top -= 1;
+                if stack[top].0 <= limit {
+                    current = stack[top].1;
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// What is done at the leaves.
+pub(crate) trait Visitor {
+    /// A leaf that the ray may touch.
+    fn leaf(&mut self, block: &Block);
+    /// Normalised distance beyond which nothing is of interest.
+    fn limit(&self) -> f32;
+}
+
+/// Entry distances of the eight boxes and a bit for each that the ray may touch.
+#[inline(always)]
+fn test(node: &WideNode, ray: &BoxRay, limit: f32) -> ([f32; WIDTH], u32) {
+    let mut near = [0.0f32; WIDTH];
+    let mut far = [limit; WIDTH];
+    for k in 0..3 {
+        let (first, last) =
+            if ray.negative[k] { (&node.hi[k], &node.lo[k]) } else { (&node.lo[k], &node.hi[k]) };
+        let (no, ni) = (ray.near_origin[k], ray.near_inverse[k]);
+        let (fo, fi) = (ray.far_origin[k], ray.far_inverse[k]);
+        for i in 0..WIDTH {
+            // A NaN (zero times infinity, in a face of the slab) compares false and bounds nothing.
+            let n = (first[i] - no) * ni;
+            near[i] = if n > near[i] { n } else { near[i] };
+            let f = (last[i] - fo) * fi;
+            far[i] = if f < far[i] { f } else { far[i] };
+        }
+    }
+    let mut mask = 0;
+    for i in 0..WIDTH {
+        mask |= u32::from(near[i] <= far[i]) << i;
+    }
+    (near, mask)
+}
+
+/// Up to eight descendants that together cover a node: the largest inner one is opened until there are eight.
+fn widen(binary: &BinaryTree, root: u32) -> Vec<u32> {
+    let mut children = binary.nodes[root as usize].children.to_vec();
+    while children.len() < WIDTH {
+        let area = |&i: &usize| binary.nodes[children[i] as usize].bounds.half_area();
+        let inner = (0..children.len()).filter(|&i| binary.nodes[children[i] as usize].count == 0);
+        let Some(open) = inner.max_by(|i, j| area(i).total_cmp(&area(j))) else { break };
+        let [left, right] = binary.nodes[children[open] as usize].children;
+        children[open] = left;
+        children.push(right);
+    }
+    children
+}
