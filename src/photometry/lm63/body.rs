@@ -14,8 +14,8 @@ const MAX_CANDELA: f64 = 1e30;
 /// Ballast factors and field 12 above this are refused, for the same reason.
 const MAX_FACTOR: f64 = 1e6;
 
-/// Share of the maximum down to which a negative intensity is measurement noise.
-const NEGATIVE_NOISE: f64 = 1e-3;
+/// Share of the maximum that passes for measurement noise: negative intensities, planes that should be equal.
+const NOISE: f64 = 1e-3;
 
 /// The numbers of a file, checked, in the file's units.
 #[derive(Debug)]
@@ -143,6 +143,7 @@ impl<'a> Reader<'a> {
             horizontal_deg: values(&horizontal),
             candela: self.candela(n_v * n_h, multiplier)?,
         };
+        self.check_seam(&web, &horizontal);
         Ok(Body {
             lamps,
             lumens_per_lamp,
@@ -248,6 +249,22 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there.
+    fn check_seam(&mut self, web: &Web, horizontal: &[Number]) {
+        let (n_v, n_h) = (web.vertical_deg.len(), web.horizontal_deg.len());
+        let h = &web.horizontal_deg;
+        let whole = web.photometric_type == PhotometricType::C && h[0] == 0.0 && h[n_h - 1] == 360.0;
+        if !whole {
+            return;
+        }
+        let (first, last) = (&web.candela[..n_v], &web.candela[(n_h - 1) * n_v..]);
+        let step = first.iter().zip(last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if step > NOISE * web.max_intensity().intensity_cd {
+            let found = format!("planes H = 0 and H = 360 that differ by up to {step} cd");
+            self.warn(horizontal[n_h - 1].offset, Kind::Range, found, "one plane, twice", "both are kept");
+        }
+    }
+
     /// The intensities times the multiplier; slightly negative ones become 0.
     fn candela(&mut self, n: usize, multiplier: f64) -> Result<Vec<f64>> {
         let mut candela = Vec::with_capacity(n);
@@ -265,7 +282,7 @@ impl<'a> Reader<'a> {
         }
         let max = candela.iter().copied().fold(0.0, f64::max);
         if let Some(number) = lowest {
-            if number.value * multiplier < -NEGATIVE_NOISE * max || max == 0.0 {
+            if number.value * multiplier < -NOISE * max || max == 0.0 {
                 let required = "0 or more (noise down to -0.1 % of the maximum is taken as 0)";
                 return self.refuse(&number, Kind::Range, "candela", required);
             }

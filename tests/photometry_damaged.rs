@@ -1,0 +1,164 @@
+//! Damaged photometric files: a result or a diagnostic, never a panic, a hang or memory beyond the file's size.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+use caustix::photometry::{Summary, lm63};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+struct Generator(u64);
+
+impl Generator {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n.max(1) as u64) as usize
+    }
+}
+
+/// Reads bytes and, if they are read, asks everything a program would ask; true if they were read.
+fn survives(bytes: &[u8]) -> bool {
+    match lm63::parse(bytes, "damaged.ies") {
+        Ok(photometry) => {
+            let summary = Summary::new(&photometry);
+            let all =
+                [summary.flux_lm, summary.flux_with_factors_lm, summary.flux_emitted_lm, summary.max_candela];
+            assert!(all.iter().all(|x| x.is_finite() && *x >= 0.0), "{all:?}");
+            for (v, h) in [(0.0, 0.0), (90.0, 359.999), (-12.5, -90.0), (180.0, 1e9), (f64::NAN, f64::NAN)] {
+                assert!(photometry.web.intensity_cd(v, h) >= 0.0);
+            }
+            let text = caustix::cli::photometry::report_text(&photometry, &summary);
+            assert!(text.contains("flux"));
+            true
+        }
+        Err(error) => {
+            assert!(error.line().is_some() && error.column().is_some(), "no place: {error}");
+            assert!(error.to_string().len() < 1000, "a message, not the file: {error}");
+            false
+        }
+    }
+}
+
+/// The project's own files, and real ones where they are at hand.
+fn files() -> Vec<PathBuf> {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("ies");
+    let names = ["spot.ies", "pool_lamp.ies", "wall_washer_1991.ies", "headlamp_a.ies", "panel_2019.ies"];
+    let mut list: Vec<PathBuf> = names.iter().map(|name| own.join(name)).collect();
+    match std::env::var_os("CAUSTIX_TEST_DATA") {
+        Some(folder) => {
+            let folder = Path::new(&folder).join("ies");
+            let names = [
+                "permissive/rp__star_focused.ies",
+                "permissive/rp__defined_diffuse.ies",
+                "permissive/mdl__test.ies",
+                "copyleft/eurs__TILT_TEST_SYNTHETIC.ies",
+                "derived/rp__pear__commas.ies",
+                "no-licence/acuity__ELM2_LED.ies",
+            ];
+            list.extend(names.iter().map(|name| folder.join(name)));
+        }
+        None => println!("skipped for real files: CAUSTIX_TEST_DATA is not set"),
+    }
+    list
+}
+
+#[test]
+fn every_truncation_is_a_result_or_a_diagnostic() {
+    for path in files() {
+        let bytes = std::fs::read(&path).unwrap();
+        let (mut read, mut refused) = (0, 0);
+        for length in 0..bytes.len() {
+            if survives(&bytes[..length]) { read += 1 } else { refused += 1 }
+        }
+        println!("{}: {read} read, {refused} refused", path.display());
+        // Whole numbers are cut off at most; what is read must be cut within the last one or behind it.
+        assert!(refused > 0 && read <= 64, "{}: {read} truncations were read", path.display());
+    }
+}
+
+/// What goes in where something else was.
+const TOKENS: [&str; 18] = [
+    "nan",
+    "-1",
+    "0",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "2147483647",
+    "99999",
+    "99999 99999",
+    ";",
+    "TILT=",
+    "\n",
+    "\r",
+    "\u{1a}",
+    "360",
+    "180",
+    "1.5",
+    "\0",
+];
+
+fn mutate(bytes: &[u8], generator: &mut Generator) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    for _ in 0..1 + generator.below(4) {
+        let at = generator.below(bytes.len());
+        match generator.below(6) {
+            0 => bytes[at] ^= 1 << generator.below(8),
+            1 => bytes[at] = b'0' + generator.below(10) as u8,
+            2 => drop(bytes.remove(at)),
+            3 => bytes.insert(at, b"0123456789.-+eE, \t"[generator.below(18)]),
+            4 => {
+                let token = format!(" {} ", TOKENS[generator.below(TOKENS.len())]);
+                bytes.splice(at..at, token.bytes());
+            }
+            _ => {
+                let end = (at + generator.below(40)).min(bytes.len());
+                drop(bytes.drain(at..end));
+            }
+        }
+        if bytes.is_empty() {
+            break;
+        }
+    }
+    bytes
+}
+
+#[test]
+fn thousands_of_mutations_are_results_or_diagnostics() {
+    let mut generator = Generator(63);
+    let (mut read, mut refused) = (0, 0);
+    for path in files() {
+        let bytes = std::fs::read(&path).unwrap();
+        for _ in 0..3000 {
+            if survives(&mutate(&bytes, &mut generator)) { read += 1 } else { refused += 1 }
+        }
+    }
+    println!("mutations: {read} read, {refused} refused");
+    assert!(read > 1000 && refused > 1000, "the mutations reach both ends: {read}, {refused}");
+}
+
+#[test]
+fn numbers_that_ask_for_memory_are_refused_at_once() {
+    let start = Instant::now();
+    for ten in [
+        "1 -1 1 2147483647 2147483647 1 2 0 0 0",
+        "1 -1 1 100000 100000 1 2 0 0 0",
+        "1 -1 1 1e18 1 1 2 0 0 0",
+        "1 -1 1 3 99999 1 2 0 0 0",
+    ] {
+        let text = format!("IESNA91\nTILT=NONE\n{ten}\n1 1 1\n{}", "0 ".repeat(100_000));
+        assert!(!survives(text.as_bytes()), "{ten}");
+    }
+    assert!(!survives(b"IESNA91\nTILT=INCLUDE\n1 4294967295\n1 1 1"));
+    let long = format!("IESNA91\nTILT=NONE\n{}", "9".repeat(4 << 20));
+    assert!(!survives(long.as_bytes()));
+    let labels = "[MORE] x\n".repeat(1 << 18);
+    assert!(!survives(labels.as_bytes()));
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+}
