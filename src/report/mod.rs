@@ -1,1 +1,3 @@
 //! What a run says.
+
+pub mod polar;
