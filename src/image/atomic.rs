@@ -1,0 +1,152 @@
+//! Files that are either the old ones or the new ones, never a half of something.
+
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::error::{Diagnostic, Kind, Result};
+
+/// Tells the temporary files of one process apart; the process id tells those of several apart.
+static NEXT: AtomicU64 = AtomicU64::new(0);
+
+/// Writes `path` by way of a temporary file of the same directory that is renamed over it when it is complete and
+/// on the disk. Whatever fails, what stood at `path` before still stands there and the temporary file is gone.
+///
+/// # Errors
+/// [`Kind::Io`], with the path, when the directory cannot be written to, `write` fails, or the renaming does.
+pub fn write_atomically(
+    path: impl AsRef<Path>,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<()> {
+    let path = path.as_ref();
+    write_and_rename(path, write).map_err(|error| {
+        Diagnostic::new(Kind::Io, format!("\"{error}\" while writing"), "a file that can be written")
+            .in_file(path)
+    })
+}
+
+fn write_and_rename(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+    let (temporary, file) = create_beside(path)?;
+    let mut writer = BufWriter::new(file);
+    write(&mut writer)?;
+    writer.flush()?;
+    // Without it a crash soon after the renaming may leave the new name on an empty file.
+    writer.get_ref().sync_all()?;
+    drop(writer);
+    fs::rename(&temporary.path, path)?;
+    temporary.keep();
+    Ok(())
+}
+
+/// A new file beside `path` under a name nobody has.
+fn create_beside(path: &Path) -> io::Result<(Temporary, File)> {
+    let Some(name) = path.file_name() else {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"));
+    };
+    loop {
+        let mut hidden = OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}-{}.tmp", process::id(), NEXT.fetch_add(1, Ordering::Relaxed)));
+        let candidate = path.with_file_name(hidden);
+        match OpenOptions::new().write(true).create_new(true).open(&candidate) {
+            Ok(file) => return Ok((Temporary { path: candidate, armed: true }, file)),
+            // Left behind by a killed process that had our id.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+/// Removes the file when dropped, unless it was renamed.
+struct Temporary {
+    path: PathBuf,
+    armed: bool,
+}
+
+impl Temporary {
+    fn keep(mut self) {
+        self.armed = false;
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if self.armed {
+            // Nothing is left to do if this fails too: the first error is the one to tell.
+            fs::remove_file(&self.path).ok();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(directory)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn replaces_the_old_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("map.png");
+        for text in ["first", "second, longer", "3"] {
+            write_atomically(&path, |w| w.write_all(text.as_bytes())).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+        }
+        assert_eq!(names(directory.path()), ["map.png"]);
+    }
+
+    #[test]
+    fn failure_leaves_the_old_file_and_no_other() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("map.png");
+        fs::write(&path, "old").unwrap();
+        let error = write_atomically(&path, |w| {
+            w.write_all(&[7; 100_000])?;
+            Err(io::Error::other("disk on fire"))
+        })
+        .unwrap_err();
+        assert_eq!(error.kind(), Kind::Io);
+        assert!(error.found().contains("disk on fire"), "{error}");
+        assert_eq!(error.file(), path.to_str());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(names(directory.path()), ["map.png"]);
+    }
+
+    #[test]
+    fn a_panic_while_writing_leaves_no_temporary_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("map.png");
+        let result = std::panic::catch_unwind(|| {
+            write_atomically(&path, |_| {
+                assert!(path.file_name().is_none(), "on purpose");
+                Ok(())
+            })
+        });
+        assert!(result.is_err());
+        assert!(names(directory.path()).is_empty());
+    }
+
+    #[test]
+    fn missing_directory_and_directory_in_the_way_are_diagnostics() {
+        let directory = tempfile::tempdir().unwrap();
+        let error = write_atomically(directory.path().join("no/such/a.exr"), |_| Ok(())).unwrap_err();
+        assert_eq!(error.kind(), Kind::Io);
+        let occupied = directory.path().join("dir");
+        fs::create_dir(&occupied).unwrap();
+        fs::write(occupied.join("x"), "x").unwrap();
+        assert_eq!(write_atomically(&occupied, |_| Ok(())).unwrap_err().kind(), Kind::Io);
+        assert_eq!(names(directory.path()), ["dir"]);
+        assert_eq!(write_atomically("..", |_| Ok(())).unwrap_err().kind(), Kind::Io);
+    }
+}
