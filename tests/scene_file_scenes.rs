@@ -173,6 +173,21 @@ fn defaults_are_as_documented() {
 }
 
 #[test]
+fn every_example_of_the_manual_reads() {
+    let manual = include_str!("../docs/SCENE.md");
+    let blocks: Vec<&str> =
+        manual.split("```toml\n").skip(1).map(|b| b.split("```").next().unwrap()).collect();
+    assert_eq!(blocks.len(), manual.matches("```").count() / 2);
+    let scene = parse(blocks[0], "manual", Base::BuiltIn).unwrap();
+    assert_eq!(scene.warnings, []);
+    // The others are parts of one scene, but for the glass of the first.
+    let parts = blocks[1..].concat() + "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n";
+    let scene = parse(&parts, "manual", Base::BuiltIn).unwrap();
+    assert_eq!((scene.emitters.len(), scene.surfaces.len(), scene.receivers.len()), (3, 8, 2));
+    assert_eq!(scene.run.photons.unwrap().value, 1 << 24);
+}
+
+#[test]
 fn transforms_are_read() {
     let text = "[[emitter]]\ntype = 'isotropic'\nposition = [1, 2, 3]\nflux_lm = 1\n[material.m]\ntype = 'absorber'\n\
                 [[surface]]\nname = 'a'\ntype = 'mesh'\nfile = 'a.obj'\nmaterial = 'm'\nscale = [1, 2, 3]\n\

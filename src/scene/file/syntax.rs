@@ -1,19 +1,38 @@
 //! Errors of the TOML text itself.
 
+use toml::Spanned;
+use toml::de::{DeTable, Error};
+
 use crate::error::{Diagnostic, Kind};
 use crate::scene::toml_table::Document;
 
 /// Most syntax errors that are told: after the first few the rest tend to be their echoes.
 const MOST_SYNTAX_ERRORS: usize = 20;
 
+/// Largest text of which more than the first fault is kept: every second byte of a text can be one.
+const MANY_FAULTS_LIMIT_BYTES: usize = 1 << 20;
+
+/// The table of a TOML text, or its faults. What the parser's recovery makes of a damaged text is not looked at: it
+/// would only add errors that are none.
+pub(super) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, Vec<Error>> {
+    if text.len() > MANY_FAULTS_LIMIT_BYTES {
+        return DeTable::parse(text).map_err(|first| vec![first]);
+    }
+    let (root, faults) = DeTable::parse_recoverable(text);
+    if faults.is_empty() { Ok(root) } else { Err(faults) }
+}
+
 /// Keep one error for every line with a fault.
-pub(super) fn report(document: &Document<'_>, text: &str, faults: &[toml::de::Error]) {
+pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
     let mut lines = Vec::new();
     for fault in faults {
         let span = fault.span().unwrap_or(text.len()..text.len());
         let place = document.place(span.start);
-        if lines.contains(&place.line) || lines.len() >= MOST_SYNTAX_ERRORS {
+        if lines.contains(&place.line) {
             continue;
+        }
+        if lines.len() >= MOST_SYNTAX_ERRORS {
+            break;
         }
         let excerpt = document.excerpt(span.clone());
         let (found, required) = if fault.message() == "duplicate key" {
