@@ -445,7 +445,7 @@ impl<'t, 'd> Table<'t, 'd> {
                 Some(inner) => {
                     tables.push((key.get_ref().to_string(), Table::new(self.document, inner, what, place)));
                 }
-                None => self.error_in(key.get_ref(), value, Kind::Syntax, required),
+                None => self.error_in(&shown(key.get_ref()), value, Kind::Syntax, required),
             }
         }
         tables
@@ -463,8 +463,7 @@ impl<'t, 'd> Table<'t, 'd> {
                 continue;
             }
             let place = self.document.place(key.span().start);
-            let shown: String = name.chars().take(40).collect();
-            let found = format!("the unknown key `{}` in {}", shown.escape_debug(), self.what);
+            let found = format!("the unknown key `{}` in {}", shown(name), self.what);
             let mut error = Diagnostic::new(Kind::Unknown, found, suggest::list(&self.known));
             if let Some(near) = suggest::nearest(name, &self.known) {
                 error = error.hint(format!("did you mean `{near}`?"));
@@ -472,6 +471,12 @@ impl<'t, 'd> Table<'t, 'd> {
             self.document.error(error.at(place.line, place.column));
         }
     }
+}
+
+/// A name from a file, for a message: at most 40 characters, control characters escaped.
+pub fn shown(name: &str) -> String {
+    let short: String = name.chars().take(40).collect();
+    short.escape_debug().to_string()
 }
 
 /// A TOML number as f64; integers are welcome where a number is.

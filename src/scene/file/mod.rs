@@ -13,7 +13,6 @@ mod syntax;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use toml::de::DeTable;
 
 use self::names::Names;
 use super::description::{Description, Place, Placed, RunDescription};
@@ -61,12 +60,13 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<Description, Vec<Diag
     }
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     let document = Document::new(body, name);
-    let (root, faults) = DeTable::parse_recoverable(body);
-    if !faults.is_empty() {
-        // What recovery made of damaged text would only add errors that are none.
-        syntax::report(&document, body, &faults);
-        return Err(document.finish().err().unwrap_or_default());
-    }
+    let root = match syntax::parse(body) {
+        Ok(root) => root,
+        Err(faults) => {
+            syntax::report(&document, body, &faults);
+            return Err(document.finish().err().unwrap_or_default());
+        }
+    };
     let parts = Parts::read(Table::new(&document, root.get_ref(), "a scene", Place { line: 1, column: 1 }));
     let warnings = document.finish()?;
     Ok(Description {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::error::{Diagnostic, Kind};
 use crate::scene::description::{Place, Placed, Reference};
 use crate::scene::suggest;
-use crate::scene::toml_table::{Document, Table};
+use crate::scene::toml_table::{Document, Table, shown};
 
 /// Longest name, in characters.
 const LONGEST_NAME: usize = 100;
@@ -37,14 +37,14 @@ impl Names {
     ) {
         let what = self.what;
         if name.is_empty() || name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
-            let shown: String = name.chars().take(40).collect();
-            let found = format!("the {what} name `{}`", shown.escape_debug());
+            let found = format!("the {what} name `{}`", shown(name));
             let required =
                 format!("a name of 1 to {LONGEST_NAME} characters, none of them a control character");
             document.error_at(place, Kind::Range, found, required);
         }
         if let Some((first, _)) = self.known.get(key) {
-            let found = format!("the {what} name `{name}` a second time (first in line {})", first.line);
+            let found =
+                format!("the {what} name `{}` a second time (first in line {})", shown(name), first.line);
             let required = format!("a name of its own for every {what}");
             document.error_at(place, Kind::Range, found, required);
             return;
@@ -87,8 +87,7 @@ impl Names {
             1..=MOST_LISTED => format!("a {what} of this scene: {}", suggest::list(&names)),
             many => format!("one of the {many} {what}s of this scene"),
         };
-        let shown: String = name.chars().take(40).collect();
-        let found = format!("the unknown {what} `{}`", shown.escape_debug());
+        let found = format!("the unknown {what} `{}`", shown(name));
         let error = Diagnostic::new(Kind::Unknown, found, required);
         match suggest::nearest(name, &names) {
             Some(near) => error.hint(format!("did you mean `{near}`?")),

@@ -5,7 +5,7 @@ use crate::error::Kind;
 use crate::scene::description::{
     ReceiverDescription, ReceiverEvents, ReceiverSide, Reference, ShapeDescription, SurfaceDescription,
 };
-use crate::scene::toml_table::Table;
+use crate::scene::toml_table::{Table, shown};
 
 /// Most cells of one receiver: 2^26, half a gigabyte of sums.
 const MOST_CELLS: u64 = 1 << 26;
@@ -45,7 +45,7 @@ pub(super) fn read(
         // Cases are not told apart: some file systems don't, and the names become file names.
         names.insert_as(table.document(), name, &name.to_lowercase(), *name_place, index);
         if !is_file_name(name) {
-            let found = format!("the receiver name `{}`", name.escape_debug());
+            let found = format!("the receiver name `{}`", shown(name));
             let required = "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space \
                             (it becomes a file name), and none of the words camera, report, con, prn, aux, nul";
             table.document().error_at(*name_place, Kind::Range, found, required);

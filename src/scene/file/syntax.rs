@@ -1,27 +1,52 @@
 //! Errors of the TOML text itself.
 
+use toml::Spanned;
+use toml::de::{DeTable, Error};
+
 use crate::error::{Diagnostic, Kind};
 use crate::scene::toml_table::Document;
 
 /// Most syntax errors that are told: after the first few the rest tend to be their echoes.
 const MOST_SYNTAX_ERRORS: usize = 20;
 
+/// Largest text of which more than the first fault is kept: every second byte of a text can be one.
+const MANY_FAULTS_LIMIT_BYTES: usize = 1 << 20;
+
+/// The table of a TOML text, or its faults. What the parser's recovery makes of a damaged text is not looked at: it
+/// would only add errors that are none.
+pub(super) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, Vec<Error>> {
+    if text.len() > MANY_FAULTS_LIMIT_BYTES {
+        return DeTable::parse(text).map_err(|first| vec![first]);
+    }
+    let (root, faults) = DeTable::parse_recoverable(text);
+    if faults.is_empty() { Ok(root) } else { Err(faults) }
+}
+
 /// Keep one error for every line with a fault.
-pub(super) fn report(document: &Document<'_>, text: &str, faults: &[toml::de::Error]) {
+pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
     let mut lines = Vec::new();
     for fault in faults {
         let span = fault.span().unwrap_or(text.len()..text.len());
         let place = document.place(span.start);
-        if lines.contains(&place.line) || lines.len() >= MOST_SYNTAX_ERRORS {
+        if lines.contains(&place.line) {
             continue;
         }
-        lines.push(place.line);
+        if lines.len() >= MOST_SYNTAX_ERRORS {
+            break;
+        }
         let excerpt = document.excerpt(span.clone());
         let (found, required) = if fault.message() == "duplicate key" {
-            duplicate(document, text, span.start, &excerpt)
+            let first = first_line_of(text, place.line);
+            if first.is_none() && !lines.is_empty() {
+                // A key that is twice in a table because the table's header is: told already.
+                continue;
+            }
+            let first = first.map(|line| format!(" (first in line {line})")).unwrap_or_default();
+            (format!("`{excerpt}` a second time{first}"), String::from("every key and every header once"))
         } else {
             in_words(fault.message(), &excerpt)
         };
+        lines.push(place.line);
         document.error(Diagnostic::new(Kind::Syntax, found, required).at(place.line, place.column));
     }
 }
@@ -39,23 +64,14 @@ fn in_words(message: &str, excerpt: &str) -> (String, String) {
     (found, expected)
 }
 
-/// A key or header for the second time, and where the first one is.
-fn duplicate(document: &Document<'_>, text: &str, byte: usize, excerpt: &str) -> (String, String) {
-    let line_of = |line: &str| line.split('#').next().unwrap_or_default().trim().replace([' ', '\t'], "");
-    let second = document.place(byte).line;
-    let lines: Vec<String> = text.lines().take(second).map(line_of).collect();
-    let own = lines.get(second - 1).cloned().unwrap_or_default();
+/// The first line of the same table with the same key as line `second`, or the first line with the same header.
+fn first_line_of(text: &str, second: usize) -> Option<usize> {
+    let bare = |line: &str| line.split('#').next().unwrap_or_default().replace([' ', '\t'], "");
+    let lines: Vec<String> = text.lines().take(second).map(bare).collect();
+    let (own, before) = lines.split_last()?;
     let is_header = own.starts_with('[');
-    let key = own.split('=').next().unwrap_or_default();
-    let mut first = None;
-    for (i, line) in lines.iter().enumerate().take(second - 1).rev() {
-        let same = if is_header { *line == own } else { line.split('=').next() == Some(key) };
-        if same {
-            first = Some(i + 1);
-        } else if !is_header && line.starts_with('[') {
-            break;
-        }
-    }
-    let first = first.map(|line| format!(" (first in line {line})")).unwrap_or_default();
-    (format!("`{excerpt}` a second time{first}"), String::from("every key and every header once"))
+    let key = own.split('=').next();
+    let same = |line: &String| if is_header { line == own } else { line.split('=').next() == key };
+    let table = before.iter().rposition(|line| line.starts_with('[')).filter(|_| !is_header).unwrap_or(0);
+    before.iter().skip(table).position(same).map(|i| table + i + 1)
 }
