@@ -210,8 +210,7 @@ impl Outcome {
         let (sum, square) = (moments.sum[at], moments.square[at]);
         Estimate {
             value: sum as f64 * self.photon_lm,
-            standard_error: standard_error_of_total(sum, square, self.replicates)
-                .map(|e| e * self.photon_lm),
+            standard_error: standard_error_of_total(sum, square, self.replicates).map(|e| e * self.photon_lm),
         }
     }
 
@@ -261,7 +260,11 @@ pub fn trace(
         if !traced.ledger.is_balanced() {
             return Err(Diagnostic::new(
                 Kind::Geometry,
-                format!("{} photons begun, {} ended", traced.ledger.total_emitted(), traced.ledger.total_ended()),
+                format!(
+                    "{} photons begun, {} ended",
+                    traced.ledger.total_emitted(),
+                    traced.ledger.total_ended()
+                ),
                 "every photon to end exactly once: this is a defect of caustix, please report it with the scene",
             ));
         }
@@ -317,9 +320,7 @@ fn trace_replicate(
     }
     let n = plan.photons_per_replicate;
     match plan.sequence {
-        Sequence::Independent => {
-            go(scene, &IndependentPoints::new(plan.seed, replicate), n, how, receivers)
-        }
+        Sequence::Independent => go(scene, &IndependentPoints::new(plan.seed, replicate), n, how, receivers),
         Sequence::Sobol => go(scene, &SobolPoints::new(), n, how, receivers),
         Sequence::SobolOwen => go(scene, &OwenPoints::new(plan.seed, replicate), n, how, receivers),
     }

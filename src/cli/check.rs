@@ -126,7 +126,8 @@ impl Check {
                 (n, 0) => format!("{n} triangles, closed"),
                 (n, open) => format!("{n} triangles, {open} open edges"),
             };
-            out += &format!("surface    {}: {edges}, {} m2\n", s.name, crate::report::text::digits(s.area_m2));
+            out +=
+                &format!("surface    {}: {edges}, {} m2\n", s.name, crate::report::text::digits(s.area_m2));
         }
         for r in &self.receivers {
             out += &format!(

@@ -1,8 +1,58 @@
 //! `caustix photometry`: what a lighting engineer wants to read about a file.
 
-use crate::photometry::lm63::generation_type;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::image::atomic::write_atomically;
+use crate::photometry::lm63::{self, generation_type};
 use crate::photometry::{Photometry, Revision, Summary, Tilt};
+use crate::report::candela::polar_plot;
 use std::fmt::Write;
+use std::path::Path;
+
+use super::{PhotometryArgs, exit, fail, print, warn};
+
+/// Runs the subcommand; the exit code.
+pub fn run(args: &PhotometryArgs) -> u8 {
+    match show(args) {
+        Ok(()) => exit::DONE,
+        Err(error) => fail(&[error]),
+    }
+}
+
+fn show(args: &PhotometryArgs) -> Result<()> {
+    let photometry = lm63::read(&args.file)?;
+    let summary = Summary::new(&photometry);
+    if let Some(path) = &args.plot {
+        plot(path, &photometry, &summary)?;
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&summary).map_err(|e| {
+            Diagnostic::new(Kind::Io, format!("\"{e}\" while writing JSON"), "numbers that JSON can hold")
+        })?;
+        print(&(text + "\n"));
+    } else {
+        warn(&photometry.warnings);
+        print(&report_text(&photometry, &summary));
+    }
+    Ok(())
+}
+
+/// Writes the polar candela diagram; the ending of the name says as what.
+fn plot(path: &Path, photometry: &Photometry, summary: &Summary) -> Result<()> {
+    let plot = polar_plot(photometry, summary);
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match ending.as_deref() {
+        Some("svg") => {
+            use std::io::Write;
+            write_atomically(path, |out| out.write_all(plot.to_svg().as_bytes()))
+        }
+        Some("png") => plot.to_png(path),
+        _ => Err(Diagnostic::new(
+            Kind::Range,
+            format!("--plot {}", path.display()),
+            "a name ending in .svg or .png",
+        )),
+    }
+}
 
 /// The report for a terminal: one quantity a line, names aligned, units behind the numbers.
 pub fn report_text(photometry: &Photometry, summary: &Summary) -> String {

@@ -33,7 +33,8 @@ pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDescri
 
 /// Runs the subcommand; the exit code.
 pub fn run(args: &RenderArgs) -> u8 {
-    let later = [("--error", args.error.is_some()), ("--time", args.time.is_some()), ("--resume", args.resume)];
+    let later =
+        [("--error", args.error.is_some()), ("--time", args.time.is_some()), ("--resume", args.resume)];
     if let Some((flag, _)) = later.iter().find(|(_, asked)| *asked) {
         return not_available(flag);
     }
@@ -109,8 +110,7 @@ fn plan(args: &RenderArgs, variant: Option<&str>, run: &RunDescription) -> Resul
     }
     if let Some(name) = args.sequence.as_deref() {
         let names = || Sequence::ALL.iter().map(|s| s.name()).collect();
-        settings.sequence =
-            Sequence::from_name(name).ok_or_else(|| unknown("--sequence", name, names()))?;
+        settings.sequence = Sequence::from_name(name).ok_or_else(|| unknown("--sequence", name, names()))?;
     }
     // A scene's replicates yield to a sequence that can have only one; the command line's do not.
     let of_scene = run.replicates.map(|p| p.value).filter(|_| settings.sequence.is_randomised());
@@ -132,10 +132,9 @@ fn say_rounding(args: &RenderArgs, plan: &Plan) {
 
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Outcome> {
     let threads = args.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|e| Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started"))?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| {
+        Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started")
+    })?;
     let bar = progress_bar(args.quiet, plan);
     let outcome = pool.install(|| trace(scene, plan, &INTERRUPTED, &|photons| bar.inc(photons)));
     bar.finish_and_clear();
@@ -146,7 +145,8 @@ fn progress_bar(quiet: bool, plan: &Plan) -> ProgressBar {
     let visible = !quiet && std::io::stderr().is_terminal();
     let target = if visible { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
     let bar = ProgressBar::with_draw_target(Some(plan.photons()), target);
-    let template = "tracing {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
+    let template =
+        "tracing {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("=> "));
     }
@@ -168,8 +168,12 @@ fn catch_interrupts() {
 
 fn make_directory(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while making the directory"), "a directory for the results")
-            .in_file(path)
+        Diagnostic::new(
+            Kind::Io,
+            format!("\"{e}\" while making the directory"),
+            "a directory for the results",
+        )
+        .in_file(path)
     })
 }
 
@@ -193,7 +197,8 @@ fn destination(output: &Path, outcome: &Outcome) -> Result<PathBuf> {
 
 fn write_report(path: &Path, report: &Report) -> Result<()> {
     let text = serde_json::to_string_pretty(report).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing the report"), "a report in JSON").in_file(path)
+        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing the report"), "a report in JSON")
+            .in_file(path)
     })?;
     write_atomically(path, |out| {
         use std::io::Write;

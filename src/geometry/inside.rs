@@ -43,3 +43,45 @@ fn winding_number(mesh: &Mesh, point: DVec3) -> f64 {
     }
     half_angle / std::f64::consts::TAU
 }
+
+impl Geometry {
+    /// The surface on which a point [m] lies, to the rounding of its coordinates, if there is one.
+    ///
+    /// Exhaustive over all faces: meant for emitters, once each.
+    pub fn surface_at(&self, point: DVec3) -> Option<SurfaceId> {
+        let size = self.bounds.0.abs().max(self.bounds.1.abs()).max(point.abs()).max_element();
+        let rounding = 16.0 * f64::EPSILON * size;
+        let on = |shape: &Shape| match shape {
+            Shape::Sphere(s) => ((point - s.centre()).length() - s.radius()).abs() <= rounding,
+            Shape::Paraboloid(p) => {
+                let foot = p.project(point);
+                let rim = (foot - p.vertex()).reject_from_normalized(p.axis()).length();
+                (foot - point).length() <= rounding && rim <= p.radius()
+            }
+            Shape::Mesh(_) | Shape::Rectangle(_) => (0..shape.face_count())
+                .filter_map(|face| shape.triangle(face))
+                .any(|t| distance_to_triangle(point, t) <= rounding),
+        };
+        self.surfaces.iter().position(|s| on(&s.shape)).map(|i| SurfaceId(i as u32))
+    }
+}
+
+/// Distance of a point from a triangle [m]. (C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5.)
+fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let area = normal.length();
+    let from_edge = |p0: DVec3, p1: DVec3| {
+        let e = p1 - p0;
+        let length2 = e.length_squared();
+        let t = if length2 > 0.0 { ((p - p0).dot(e) / length2).clamp(0.0, 1.0) } else { 0.0 };
+        (p - (p0 + e * t)).length()
+    };
+    let edges = from_edge(a, b).min(from_edge(b, c)).min(from_edge(c, a));
+    let within = |p0: DVec3, p1: DVec3| normal.dot((p1 - p0).cross(p - p0)) >= 0.0;
+    if area > 0.0 && within(a, b) && within(b, c) && within(c, a) {
+        ((p - a).dot(normal) / area).abs().min(edges)
+    } else {
+        edges
+    }
+}

@@ -270,10 +270,7 @@ fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux
             // The baseline lies half a digit below the line.
             let drop = 0.35 * LABEL_SIZE_PX;
             let centre = shift(&label.centre);
-            let at = [
-                centre[0] - drop * libm::sin(label.angle),
-                centre[1] + drop * libm::cos(label.angle),
-            ];
+            let at = [centre[0] - drop * libm::sin(label.angle), centre[1] + drop * libm::cos(label.angle)];
             let style = TextStyle::new(LABEL_SIZE_PX, colour(place)).anchored(Anchor::Middle);
             canvas.text_halo(at, label.angle, &line.tick.label, &style, 1.8);
             let style = TextStyle { colour: line_colour(place), ..style };

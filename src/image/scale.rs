@@ -210,8 +210,14 @@ mod tests {
 
     #[test]
     fn linear_ticks_are_round_and_exact() {
-        assert_eq!(labels(&linear_ticks(0.0, 0.3, 6)), ["0.00", "0.05", "0.10", "0.15", "0.20", "0.25", "0.30"]
-            .map(|l| if l == "0.00" { "0" } else { l }));
+        assert_eq!(
+            labels(&linear_ticks(0.0, 0.3, 6)),
+            ["0.00", "0.05", "0.10", "0.15", "0.20", "0.25", "0.30"].map(|l| if l == "0.00" {
+                "0"
+            } else {
+                l
+            })
+        );
         assert_eq!(labels(&linear_ticks(0.0, 1234.0, 6)), ["0", "500", "1000"]);
         assert_eq!(labels(&linear_ticks(-0.5, 0.5, 5)), ["-0.4", "-0.2", "0", "0.2", "0.4"]);
         assert_eq!(labels(&linear_ticks(0.0, 5e6, 6)), ["0", "1e6", "2e6", "3e6", "4e6", "5e6"]);
@@ -232,7 +238,8 @@ mod tests {
 
     #[test]
     fn round_125_brackets() {
-        for (value, below, above) in [(3.0, 2.0, 5.0), (0.07, 0.05, 0.1), (1e-9, 1e-9, 1e-9), (999.0, 500.0, 1000.0)]
+        for (value, below, above) in
+            [(3.0, 2.0, 5.0), (0.07, 0.05, 0.1), (1e-9, 1e-9, 1e-9), (999.0, 500.0, 1000.0)]
         {
             assert_eq!((round_125(value, false), round_125(value, true)), (below, above));
         }

@@ -205,7 +205,12 @@ impl Report {
                 }),
             },
             ledger_photons: LedgerPhotons {
-                emitted: scene.emitter_names.iter().cloned().zip(outcome.ledger.emitted.iter().copied()).collect(),
+                emitted: scene
+                    .emitter_names
+                    .iter()
+                    .cloned()
+                    .zip(outcome.ledger.emitted.iter().copied())
+                    .collect(),
                 absorbed: surfaces
                     .iter()
                     .map(|s| s.name.clone())
@@ -259,7 +264,9 @@ impl Report {
 pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
     match (outcome.replicates, outcome.plan.sequence.is_randomised()) {
         (2.., _) => None,
-        (_, false) => Some("this sequence has no seed: there is one replicate, and one set of points has no spread"),
+        (_, false) => {
+            Some("this sequence has no seed: there is one replicate, and one set of points has no spread")
+        }
         (_, true) => Some("one replicate: the points of one set are not independent of each other"),
     }
 }

@@ -72,8 +72,7 @@ fn write_exr(
     };
     let illuminance = floats(&statistics.illuminance_lx);
     let error = floats(&statistics.standard_error_lx);
-    let mut hits: Vec<u32> =
-        statistics.hits.iter().map(|h| u32::try_from(*h).unwrap_or(u32::MAX)).collect();
+    let mut hits: Vec<u32> = statistics.hits.iter().map(|h| u32::try_from(*h).unwrap_or(u32::MAX)).collect();
     hits.resize(width * height, 0);
     let channels = [
         Channel { name: "illuminance", data: Data::F32(&illuminance) },
@@ -105,10 +104,7 @@ fn picture<'a>(
         size_m: receiver.size_m,
         scale: Scale::Auto,
         isolux: true,
-        footer: vec![
-            flux,
-            format!("{} photons, {error}", super::text::grouped(outcome.photons)),
-        ],
+        footer: vec![flux, format!("{} photons, {error}", super::text::grouped(outcome.photons))],
     }
 }
 

@@ -96,7 +96,8 @@ impl PolarPlot {
     }
 
     fn frame(&self) -> Frame {
-        let finite = || self.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
+        let finite =
+            || self.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
         let max = finite().map(|p| p.1).fold(0.0, f64::max);
         let full = finite().any(|p| p.0.abs() > 90.0 && p.1 > 0.0);
         // Subnormal candela have no round numbers.
@@ -181,7 +182,10 @@ fn draw_grid(shapes: &mut Vec<Shape>, frame: &Frame) {
                 let end = frame.place(side * angle as f64, frame.outer_cd);
                 // Fine rays would fill the centre.
                 let start = if angle % 30 == 0 { 0.0 } else { 0.2 * frame.outer_cd };
-                shapes.push(Shape::Polyline { points: vec![frame.place(side * angle as f64, start), end], pen });
+                shapes.push(Shape::Polyline {
+                    points: vec![frame.place(side * angle as f64, start), end],
+                    pen,
+                });
                 shapes.push(angle_label([cx, cy], side, angle));
             }
         }
@@ -274,7 +278,8 @@ mod tests {
 
     #[test]
     fn a_lambertian_source_draws_a_circle() {
-        let plot = plot((-90..=90).map(|a| (f64::from(a), 500.0 * f64::from(a).to_radians().cos())).collect());
+        let plot =
+            plot((-90..=90).map(|a| (f64::from(a), 500.0 * f64::from(a).to_radians().cos())).collect());
         let frame = plot.frame();
         let middle = [frame.centre[0], frame.centre[1] + 0.5 * RADIUS];
         for p in first_curve(&plot) {

@@ -94,7 +94,11 @@ fn write_receiver(
         None => writeln!(out, "  uniformity   none: no light arrives")?,
     }
     if let Some(nrms) = s.expected_nrms {
-        writeln!(out, "  error        a cell is off by {} % of the mean (root mean square)", digits(100.0 * nrms))?;
+        writeln!(
+            out,
+            "  error        a cell is off by {} % of the mean (root mean square)",
+            digits(100.0 * nrms)
+        )?;
     }
     if !files.is_empty() {
         writeln!(out, "  files        {}", files.join(", "))?;

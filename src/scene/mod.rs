@@ -78,7 +78,8 @@ impl Scene {
         let (surfaces, bsdfs): (Vec<_>, Vec<_>) = parts.surfaces.into_iter().unzip();
         let (emitter_names, emitters): (Vec<_>, Vec<_>) = parts.emitters.into_iter().unzip();
         let mut errors = check::coincidences(&surfaces);
-        let geometry = Geometry::build(surfaces).map_err(|e| [std::mem::take(&mut errors), vec![e]].concat())?;
+        let geometry =
+            Geometry::build(surfaces).map_err(|e| [std::mem::take(&mut errors), vec![e]].concat())?;
         let keep = |result: Result<_>, errors: &mut Vec<Diagnostic>| result.map_err(|e| errors.push(e)).ok();
         let receivers: Vec<Receiver> = parts
             .receivers

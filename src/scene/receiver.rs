@@ -110,7 +110,12 @@ impl Receiver {
         if cells.is_empty() || !areas_m2.iter().all(|a| *a > 0.0 && a.is_finite()) {
             return Err(Diagnostic::new(
                 Kind::Range,
-                format!("receiver \"{}\" of {} cells with an area of {} m2", spec.name, cells.len(), shape.area()),
+                format!(
+                    "receiver \"{}\" of {} cells with an area of {} m2",
+                    spec.name,
+                    cells.len(),
+                    shape.area()
+                ),
                 "at least one cell, and a positive area for each",
             ));
         }

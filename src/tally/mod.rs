@@ -7,4 +7,4 @@ pub mod counts;
 pub mod receiver;
 
 pub use counts::{Counts, Moments};
-pub use receiver::{Receivers, ReceiverSink};
+pub use receiver::{ReceiverSink, Receivers};

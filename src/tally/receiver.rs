@@ -5,8 +5,8 @@
 //! mesh has a cell a face.
 
 use crate::geometry::{Geometry, Hit};
-use crate::scene::receiver::{Cells, Receiver};
 use crate::scene::description::{ReceiverEvents, ReceiverSide};
+use crate::scene::receiver::{Cells, Receiver};
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;

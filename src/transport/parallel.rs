@@ -32,7 +32,7 @@ pub struct Traced {
 }
 
 /// How a range of photons is to be traced.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct How<'a> {
     /// Renormalisation on (METHOD 2).
     pub reuse: bool,

@@ -1,0 +1,69 @@
+//! The polar diagram of a photometric file: which planes are drawn.
+
+use crate::photometry::web::PhotometricType;
+use crate::photometry::{Photometry, Summary};
+
+use super::polar::{Curve, PolarPlot};
+use super::text::digits;
+
+/// The diagram of a file: type C the planes C0-C180 and C90-C270; types A and B the vertical section (H = 0) and the
+/// horizontal one (V = 0), with the aim at the bottom. One curve where both planes are the same.
+pub fn polar_plot(photometry: &Photometry, summary: &Summary) -> PolarPlot {
+    let web = &photometry.web;
+    let (first, second) = match web.photometric_type {
+        PhotometricType::C => {
+            // Signed polar angle: negative angles lie in the opposite half plane.
+            let plane = |positive_deg: f64, negative_deg: f64| {
+                let at = |angle: f64| {
+                    let h = if angle < 0.0 { negative_deg } else { positive_deg };
+                    web.intensity_cd(angle.abs(), h)
+                };
+                section(at, &web.vertical_deg)
+            };
+            (("C0 - C180", plane(0.0, 180.0)), ("C90 - C270", plane(90.0, 270.0)))
+        }
+        PhotometricType::A | PhotometricType::B => (
+            ("vertical (H = 0)", section(|v| web.intensity_cd(v, 0.0), &web.vertical_deg)),
+            ("horizontal (V = 0)", section(|h| web.intensity_cd(0.0, h), &web.horizontal_deg)),
+        ),
+    };
+    let curve =
+        |(label, points): (&str, Vec<(f64, f64)>), dashed| Curve { label: label.into(), points, dashed };
+    let mut curves = vec![curve(first, false), curve(second, true)];
+    if curves[0].points == curves[1].points {
+        curves.truncate(1);
+        curves[0].label = "all planes".into();
+    }
+    PolarPlot { title: title(photometry), curves, footer: footer(summary) }
+}
+
+/// Intensities at the table's own angles on both sides, and at whole degrees between.
+fn section(at: impl Fn(f64) -> f64, table_deg: &[f64]) -> Vec<(f64, f64)> {
+    let mut angles: Vec<f64> = (-180..=180).map(f64::from).collect();
+    angles.extend(table_deg.iter().flat_map(|a| [*a, -a]).filter(|a| a.abs() <= 180.0));
+    angles.sort_by(f64::total_cmp);
+    angles.dedup();
+    angles.into_iter().map(|a| (a, at(a))).collect()
+}
+
+fn title(photometry: &Photometry) -> String {
+    let named =
+        ["LUMINAIRE", "LUMCAT"].iter().filter_map(|k| photometry.label(k)).find(|t| !t.trim().is_empty());
+    match named {
+        Some(text) => text.lines().next().unwrap_or_default().trim().to_string(),
+        None => std::path::Path::new(&photometry.file)
+            .file_name()
+            .map_or_else(|| photometry.file.clone(), |n| n.to_string_lossy().into_owned()),
+    }
+}
+
+fn footer(s: &Summary) -> Vec<String> {
+    let angle = |name: &str, degrees: Option<f64>| degrees.map(|d| format!("{name} {}\u{b0}", digits(d)));
+    let angles = [angle("beam angle", s.beam_angle_deg), angle("field angle", s.field_angle_deg)];
+    let mut lines = vec![format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela))];
+    let angles: Vec<String> = angles.into_iter().flatten().collect();
+    if !angles.is_empty() {
+        lines.push(angles.join(", "));
+    }
+    lines
+}

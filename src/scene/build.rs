@@ -1,0 +1,214 @@
+//! From a description to a scene: loads the files it names, makes shapes, materials, emitters and receivers.
+
+use glam::{DVec2, DVec3};
+
+use crate::bsdf::{Bsdf, Dielectric};
+use crate::emitter::collimated::CrossSection;
+use crate::emitter::{Collimated, Emitter, Isotropic, Photometric};
+use crate::error::{Diagnostic, Kind, Result};
+use crate::geometry::{
+    self, Formula, HeightImage, Heightfield, Noise, ObjOptions, Octave, Paraboloid, Rectangle, Shape,
+    Smoothing, Sphere, Surface, Transform, Wave, box_mesh, parse_obj,
+};
+use crate::photometry::lm63;
+
+use super::description::{
+    BeamSection, Description, EmitterDescription, EmitterShape, Facing, HeightfieldDescription, MaterialKind,
+    Place, ReliefDescription, ShapeDescription, SurfaceDescription,
+};
+use super::receiver::ReceiverSpec;
+use super::source::sha256_hex;
+use super::{Identity, Scene, SceneParts};
+
+/// Builds the scene that a description describes.
+///
+/// # Errors
+/// All that is wrong with it and its files, not only the first.
+pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagnostic>> {
+    let mut parts = SceneParts { identity: identity(description), ..SceneParts::default() };
+    parts.warnings.extend(description.warnings.iter().cloned());
+    let mut errors = Vec::new();
+    for surface in &description.surfaces {
+        match shape(description, surface, &mut parts.warnings) {
+            Ok(shape) => {
+                let bsdf = material(description.materials[surface.material.index].kind);
+                parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf));
+            }
+            Err(e) => errors.push(placed(description, surface.place, e)),
+        }
+    }
+    for e in &description.emitters {
+        match emitter(description, e, &mut parts.warnings) {
+            Ok(emitter) => parts.emitters.push((e.name.clone(), emitter)),
+            Err(error) => errors.push(placed(description, e.place, error)),
+        }
+    }
+    parts.receivers = description
+        .receivers
+        .iter()
+        .map(|r| ReceiverSpec {
+            name: r.name.clone(),
+            surface: r.surface.name.clone(),
+            cells: r.cells,
+            side: r.side,
+            events: r.events,
+        })
+        .collect();
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    Scene::new(parts)
+        .map_err(|errors| errors.into_iter().map(|e| e.in_file(&description.source.name)).collect())
+}
+
+/// An error without a place of its own gets that of the part of the scene it is about.
+fn placed(description: &Description, place: Place, error: Diagnostic) -> Diagnostic {
+    if error.file().is_some() {
+        return error;
+    }
+    error.at(place.line, place.column).in_file(&description.source.name)
+}
+
+fn identity(description: &Description) -> Identity {
+    let source = &description.source;
+    // A file that cannot be read has its error reported where it is used.
+    let files = description.files().filter_map(|file| {
+        source.load(&file.value).ok().map(|bytes| (file.value.clone(), sha256_hex(&bytes)))
+    });
+    Identity {
+        name: source.name.clone(),
+        text: source.text.clone(),
+        sha256: source.sha256.clone(),
+        files: files.collect(),
+    }
+}
+
+fn material(kind: MaterialKind) -> Bsdf {
+    match kind {
+        MaterialKind::Dielectric { ior, ior_outside } => Bsdf::Dielectric(Dielectric { ior_outside, ior }),
+        MaterialKind::Mirror { reflectance } => Bsdf::Mirror { reflectance },
+        MaterialKind::Lambertian { reflectance } => Bsdf::Lambertian { reflectance },
+        MaterialKind::Absorber => Bsdf::Absorber,
+    }
+}
+
+fn shape(d: &Description, surface: &SurfaceDescription, warnings: &mut Vec<Diagnostic>) -> Result<Shape> {
+    let t = &surface.transform;
+    let transform = Transform::new(t.scale, t.rotate_deg, t.translate)?;
+    let shape = match &surface.shape {
+        ShapeDescription::Mesh { file, closed, smooth } => {
+            let bytes = d.load(file)?;
+            let options = ObjOptions {
+                transform,
+                smoothing: match smooth {
+                    Some(true) => Smoothing::Computed,
+                    Some(false) => Smoothing::Flat,
+                    None => Smoothing::Given,
+                },
+                closed: *closed == Some(true),
+            };
+            // Messages name the file by its path, or as it is written in a scene without a folder.
+            let path = d.source.path(&file.value).unwrap_or_else(|| file.value.clone().into());
+            let (mesh, found) = parse_obj(&bytes, &path, &options)?;
+            warnings.extend(found);
+            return Ok(Shape::Mesh(mesh)); // The transform is applied already, before the checks.
+        }
+        ShapeDescription::Rectangle { corner, edge_u, edge_v } => {
+            Shape::Rectangle(Rectangle::new(*corner, *edge_u, *edge_v)?)
+        }
+        ShapeDescription::Box { min, max } => Shape::Mesh(box_mesh(*min, *max)?),
+        ShapeDescription::Sphere { center, radius } => Shape::Sphere(Sphere::new(*center, *radius)?),
+        ShapeDescription::Paraboloid { vertex, axis, focal_length, radius } => {
+            Shape::Paraboloid(Paraboloid::new(*vertex, *axis, *focal_length, *radius)?)
+        }
+        ShapeDescription::Heightfield(field) => Shape::Mesh(heightfield(d, field)?.mesh()?),
+    };
+    if t.is_identity() { Ok(shape) } else { shape.transformed(&transform) }
+}
+
+fn heightfield(d: &Description, field: &HeightfieldDescription) -> Result<Heightfield> {
+    let (cells, formula) = match &field.relief {
+        ReliefDescription::Waves { cells, waves } => {
+            let waves = waves.iter().map(|w| Wave {
+                amplitude_m: w.amplitude,
+                wavelength_m: w.wavelength,
+                direction_deg: w.direction_deg,
+                phase_deg: w.phase_deg,
+            });
+            (*cells, Formula::Waves(waves.collect()))
+        }
+        ReliefDescription::Noise { cells, seed, amplitude, octaves } => {
+            let octaves = octaves
+                .iter()
+                .map(|o| Octave { amplitude: o.amplitude, wavelength_m: o.wavelength })
+                .collect();
+            (*cells, Formula::Noise(Noise::new(*seed, octaves, *amplitude)?))
+        }
+        ReliefDescription::Image { file, height: [low, high] } => {
+            let path = d.source.path(&file.value).ok_or_else(|| {
+                Diagnostic::new(
+                    Kind::Io,
+                    format!("the image \"{}\" in a scene that is inside the program", file.value),
+                    "a scene file in a folder",
+                )
+            })?;
+            let image = HeightImage::read(&path, *low, *high)?;
+            let [columns, rows] = image.size();
+            ([columns as u32 - 1, rows as u32 - 1], Formula::Image(image))
+        }
+    };
+    let min = DVec2::new(field.origin.x, field.origin.y);
+    Ok(Heightfield {
+        min,
+        max: min + DVec2::from_array(field.size),
+        z_m: field.origin.z,
+        cells,
+        formula,
+        facing: match field.facing {
+            Facing::Up => geometry::Facing::Up,
+            Facing::Down => geometry::Facing::Down,
+        },
+        smooth: field.smooth,
+    })
+}
+
+fn emitter(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnostic>) -> Result<Emitter> {
+    let position = e.position.value;
+    let (aim, up) = (e.frame.aim, e.frame.up);
+    match &e.shape {
+        EmitterShape::Photometric { file } => {
+            let bytes = d.load(file)?;
+            let path = d.source.path(&file.value);
+            let photometry = match &path {
+                Some(path) => lm63::read(path)?,
+                None => lm63::parse(&bytes, &file.value)?,
+            };
+            warnings.extend(photometry.warnings.iter().cloned());
+            let emitter = Photometric::new(&photometry, position, aim, up, e.flux_lm);
+            let name = path.map_or_else(|| file.value.clone(), |p| p.display().to_string());
+            Ok(Emitter::Photometric(Box::new(emitter.map_err(|error| error.in_file(name))?)))
+        }
+        EmitterShape::Isotropic => Ok(Emitter::Isotropic(Isotropic { position, flux_lm: required_flux(e)? })),
+        EmitterShape::Collimated { section } => {
+            let across: DVec3 = aim.cross(up);
+            let section = match section {
+                BeamSection::Disc { radius } => CrossSection::Disc(across * *radius, up * *radius),
+                BeamSection::Rectangle { width, height } => {
+                    CrossSection::Rectangle(across * (0.5 * width), up * (0.5 * height))
+                }
+            };
+            let flux_lm = required_flux(e)?;
+            Ok(Emitter::Collimated(Collimated { centre: position, direction: aim, section, flux_lm }))
+        }
+    }
+}
+
+fn required_flux(e: &EmitterDescription) -> Result<f64> {
+    e.flux_lm.ok_or_else(|| {
+        Diagnostic::new(
+            Kind::Missing,
+            format!("emitter \"{}\" without flux_lm", e.name),
+            "flux_lm, in lumens",
+        )
+    })
+}
