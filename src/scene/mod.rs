@@ -2,6 +2,7 @@
 
 pub mod count;
 pub mod description;
+pub mod document;
 pub mod file;
 pub mod source;
 pub mod suggest;
