@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::scene::description::Description;
+use caustix::scene::description::{Description, ReliefDescription, ShapeDescription};
 use caustix::scene::file::parse;
 use caustix::scene::source::Base;
 
@@ -565,12 +565,12 @@ fn heightfields() {
         "one of waves, noise and image, not several",
     );
     expect(&field(&format!("cells = «[4096, 1025]\n{waves}")), Kind::Limit, "cells = [4096, 1025]", CELLS);
-    expect(
-        &field("image = \"a.png\"\nheight = [0, 1]\ncells = «[2, 2]"),
-        Kind::Range,
-        "cells = [2, 2]",
-        "no cells: an image has one vertex a pixel",
-    );
+    for (keys, expected) in [("", None), ("cells = [2, 3]", Some([2, 3]))] {
+        let scene = read(&field(&format!("image = \"a.png\"\nheight = [0, 1]\n{keys}"))).unwrap();
+        let ShapeDescription::Heightfield(image) = &scene.surfaces[1].shape else { panic!("a heightfield") };
+        let ReliefDescription::Image { cells, file, height } = &image.relief else { panic!("an image") };
+        assert_eq!((*cells, file.value.as_str(), *height), (expected, "a.png", [0.0, 1.0]));
+    }
     expect(
         &field("image = \"a.png\"").replace("[[surface]]\nname = \"s\"", "«[[surface]]\nname = \"s\""),
         Kind::Missing,

@@ -333,7 +333,8 @@ fn prism_turns_the_beam_onto_the_screen() {
     }
 }
 
-/// Distance to the nearest face before a point that does not lie on one, and the normal against the direction.
+/// Distance to the nearest face before a point that does not lie on one, and the normal against the
+/// direction.
 fn nearest(faces: &[[DVec3; 3]], origin: DVec3, direction: DVec3) -> Option<(f64, DVec3)> {
     let mut best: Option<(f64, DVec3)> = None;
     for [a, b, c] in faces {

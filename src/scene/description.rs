@@ -1,9 +1,9 @@
 //! A scene as its file states it: plain data, nothing built yet.
 //!
-//! Lengths are in metres, angles in degrees, flux in lumens. What can be checked without opening another file has been
-//! checked: every number is finite and in its range, every name is unique, every reference leads somewhere. Each part
-//! keeps its place in the file, so that later checks (a mesh with open edges, an emitter inside glass) can point there.
-//! docs/SCENE.md describes the format.
+//! Lengths are in metres, angles in degrees, flux in lumens. What can be checked without opening another file
+//! has been checked: every number is finite and in its range, every name is unique, every reference leads
+//! somewhere. Each part keeps its place in the file, so that later checks (a mesh with open edges, an emitter
+//! inside glass) can point there. docs/SCENE.md describes the format.
 
 use glam::DVec3;
 
@@ -142,7 +142,8 @@ pub struct EmitterDescription {
 pub struct Frame {
     /// Unit vector of the direction (V, H) = (0, 0), for types A, B and C alike.
     pub aim: DVec3,
-    /// Unit vector orthogonal to `aim`. Type C: towards which H = 0 tilts; types A and B: towards which V grows.
+    /// Unit vector orthogonal to `aim`. Type C: towards which H = 0 tilts; types A and B: towards which V
+    /// grows.
     pub up: DVec3,
 }
 
@@ -239,7 +240,8 @@ pub enum ShapeDescription {
         file: Placed<String>,
         /// `Some(true)`: open edges are an error.
         closed: Option<bool>,
-        /// `Some(true)`: compute smooth normals; `Some(false)`: facet normals; `None`: the file's, if it has any.
+        /// `Some(true)`: compute smooth normals; `Some(false)`: facet normals; `None`: the file's, if it has
+        /// any.
         smooth: Option<bool>,
     },
     /// The points corner + u edge_u + v edge_v, u and v in [0, 1]; front: the side of edge_u x edge_v.
@@ -339,8 +341,10 @@ pub enum ReliefDescription {
         /// At least one.
         octaves: Vec<OctaveDescription>,
     },
-    /// A grey image, one vertex a pixel.
+    /// A grey image, spread over the rectangle with its first row at the greatest y.
     Image {
+        /// Cells along x and y; `None`: one vertex a pixel.
+        cells: Option<[u32; 2]>,
         /// The file, as named.
         file: Placed<String>,
         /// h of black and of white, in metres.
@@ -348,7 +352,8 @@ pub enum ReliefDescription {
     },
 }
 
-/// h(x, y) = amplitude sin(2 pi / wavelength (x cos(direction) + y sin(direction)) + phase).
+/// h(x, y) = amplitude sin(2 pi / wavelength (x cos(direction) + y sin(direction)) + phase), x and y counted
+/// from the scene's origin (before the transform), not from the heightfield's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaveDescription {
     /// In metres.

@@ -7,6 +7,7 @@ pub mod build;
 pub mod check;
 pub mod count;
 pub mod description;
+pub mod document;
 pub mod file;
 pub mod receiver;
 pub mod requires;

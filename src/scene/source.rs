@@ -62,8 +62,8 @@ impl Source {
     /// The bytes of a file that the scene names by this path, at most [`FILE_LIMIT_BYTES`].
     ///
     /// # Errors
-    /// [`Kind::Io`] for a file that is missing, not a regular file or not readable, [`Kind::Limit`] for one that is
-    /// too large. The diagnostic has no place: see [`super::description::Description::load`].
+    /// [`Kind::Io`] for a file that is missing, not a regular file or not readable, [`Kind::Limit`] for one
+    /// that is too large. The diagnostic has no place: see [`super::description::Description::load`].
     pub fn load(&self, path: &str) -> Result<Vec<u8>> {
         match self.path(path) {
             Some(full) => read_capped(&full, FILE_LIMIT_BYTES),

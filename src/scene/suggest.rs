@@ -1,7 +1,7 @@
 //! The nearest known word to a misspelt one.
 
-/// Edit distance in characters where an insertion, a deletion, a substitution and a swap of two neighbours cost
-/// 1 each (optimal string alignment, the restricted form of Damerau, CACM 7(3), 1964).
+/// Edit distance in characters where an insertion, a deletion, a substitution and a swap of two neighbours
+/// cost 1 each (optimal string alignment, the restricted form of Damerau, CACM 7(3), 1964).
 pub fn edit_distance(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().collect();
     let b: Vec<char> = b.chars().collect();
@@ -24,8 +24,8 @@ pub fn edit_distance(a: &str, b: &str) -> usize {
 
 /// The known word nearest to `word`, or `None` where no word is near enough to be what was meant.
 ///
-/// Case is ignored. Near enough is: at most half of the longer word's characters differ, or one of the two is a
-/// beginning of the other of at least two characters. Of equally near words the first listed wins.
+/// Case is ignored. Near enough is: at most half of the longer word's characters differ, or one of the two is
+/// a beginning of the other of at least two characters. Of equally near words the first listed wins.
 pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     // A longer word matches nothing here, and the distance costs the product of both lengths.
     const LONGEST_WORD: usize = 64;

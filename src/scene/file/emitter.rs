@@ -76,8 +76,8 @@ fn read_frame(table: &mut Table<'_, '_>) -> Option<Frame> {
     orthogonal_part(DVec3::X, aim).map(|up| Frame { aim, up })
 }
 
-/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the angle
-/// between their lines is below 1e-9, where rounding would choose the direction.
+/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the
+/// angle between their lines is below 1e-9, where rounding would choose the direction.
 fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
     let sine = v.cross(axis).length();
     // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.

@@ -3,7 +3,7 @@
 use super::{ANGLE, COORDINATE, LENGTH};
 use crate::error::Kind;
 use crate::scene::description::{
-    Facing, HeightfieldDescription, OctaveDescription, ReliefDescription, WaveDescription,
+    Facing, HeightfieldDescription, OctaveDescription, Placed, ReliefDescription, WaveDescription,
 };
 use crate::scene::toml_table::{Interval, Table};
 
@@ -51,12 +51,7 @@ fn read_relief(table: &mut Table<'_, '_>) -> Option<ReliefDescription> {
             table.error("waves", Kind::Missing, "[{ ... }], or noise = { ... }, or image = \"file.png\"");
             None
         }
-        ["image"] => {
-            if table.place_of("cells").is_some() {
-                table.error("cells", Kind::Range, "no cells: an image has one vertex a pixel");
-            }
-            image
-        }
+        ["image"] => image.map(|(file, height)| ReliefDescription::Image { cells, file, height }),
         [one] => {
             let cells = table.require("cells", cells, CELLS)?;
             if one == "waves" {
@@ -124,7 +119,7 @@ fn read_octave(mut table: Table<'_, '_>) -> Option<OctaveDescription> {
 }
 
 /// `image` and `height`, which belong together.
-fn read_image(table: &mut Table<'_, '_>) -> Option<ReliefDescription> {
+fn read_image(table: &mut Table<'_, '_>) -> Option<(Placed<String>, [f64; 2])> {
     let height = table.numbers::<2>("height", &HEIGHT);
     if table.place_of("image").is_none() {
         // Known as a key, so that a scene without one is not told of an unknown key, but of no use alone.
@@ -136,5 +131,5 @@ fn read_image(table: &mut Table<'_, '_>) -> Option<ReliefDescription> {
     }
     let file = table.path("image");
     let height = table.require("height", height, "[height of black, height of white] in metres");
-    Some(ReliefDescription::Image { file: file?, height: height? })
+    Some((file?, height?))
 }

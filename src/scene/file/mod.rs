@@ -16,8 +16,9 @@ use glam::DVec3;
 
 use self::names::Names;
 use super::description::{Description, Place, Placed, RunDescription};
+use super::document::Document;
 use super::source::{self, Base, Source};
-use super::toml_table::{Document, Interval, Table};
+use super::toml_table::{Interval, Table};
 use crate::error::{Diagnostic, Kind};
 
 /// Most emitters, materials, surfaces or receivers of one scene, each.
@@ -34,9 +35,9 @@ const ANGLE: Interval = Interval { low: -1e6, high: 1e6, words: "an angle from -
 /// Read a scene file of at most [`source::SCENE_LIMIT_BYTES`] and look for the files it names.
 ///
 /// # Errors
-/// Every error of the file, in its order: syntax, unknown keys and words, missing keys, values out of range, names used
-/// twice or not at all, files that are not there. At most [`super::toml_table::MOST_ERRORS`], and one that counts the
-/// rest.
+/// Every error of the file, in its order: syntax, unknown keys and words, missing keys, values out of range,
+/// names used twice or not at all, files that are not there. At most [`super::document::MOST_ERRORS`], and
+/// one that counts the rest.
 pub fn read(path: impl AsRef<Path>) -> Result<Description, Vec<Diagnostic>> {
     let path = path.as_ref();
     let name = path.display().to_string();

@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use crate::error::{Diagnostic, Kind};
 use crate::scene::description::{Place, Placed, Reference};
+use crate::scene::document::Document;
 use crate::scene::suggest;
-use crate::scene::toml_table::{Document, Table, shown};
+use crate::scene::toml_table::{Table, shown};
 
 /// Longest name, in characters.
 const LONGEST_NAME: usize = 100;
 
-/// Names with their places and indices; parts with an error keep theirs, so that a reference to one is no second error.
+/// Names with their places and indices; parts with an error keep theirs, so that a reference to one is no
+/// second error.
 pub(super) struct Names {
     what: &'static str,
     known: BTreeMap<String, (Place, usize)>,

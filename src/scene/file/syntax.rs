@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeTable, Error};
 
 use crate::error::{Diagnostic, Kind};
-use crate::scene::toml_table::Document;
+use crate::scene::document::Document;
 
 /// Most syntax errors that are told: after the first few the rest tend to be their echoes.
 const MOST_SYNTAX_ERRORS: usize = 20;
@@ -12,8 +12,8 @@ const MOST_SYNTAX_ERRORS: usize = 20;
 /// Largest text of which more than the first fault is kept: every second byte of a text can be one.
 const MANY_FAULTS_LIMIT_BYTES: usize = 1 << 20;
 
-/// The table of a TOML text, or its faults. What the parser's recovery makes of a damaged text is not looked at: it
-/// would only add errors that are none.
+/// The table of a TOML text, or its faults. What the parser's recovery makes of a damaged text is not looked
+/// at: it would only add errors that are none.
 pub(super) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, Vec<Error>> {
     if text.len() > MANY_FAULTS_LIMIT_BYTES {
         return DeTable::parse(text).map_err(|first| vec![first]);
@@ -64,7 +64,8 @@ fn in_words(message: &str, excerpt: &str) -> (String, String) {
     (found, expected)
 }
 
-/// The first line of the same table with the same key as line `second`, or the first line with the same header.
+/// The first line of the same table with the same key as line `second`, or the first line with the same
+/// header.
 fn first_line_of(text: &str, second: usize) -> Option<usize> {
     let bare = |line: &str| line.split('#').next().unwrap_or_default().replace([' ', '\t'], "");
     let lines: Vec<String> = text.lines().take(second).map(bare).collect();
