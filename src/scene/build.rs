@@ -144,7 +144,7 @@ fn heightfield(d: &Description, field: &HeightfieldDescription) -> Result<Height
                 .collect();
             (*cells, Formula::Noise(Noise::new(*seed, octaves, *amplitude)?))
         }
-        ReliefDescription::Image { file, height: [low, high] } => {
+        ReliefDescription::Image { cells, file, height: [low, high] } => {
             let path = d.source.path(&file.value).ok_or_else(|| {
                 Diagnostic::new(
                     Kind::Io,
@@ -154,7 +154,8 @@ fn heightfield(d: &Description, field: &HeightfieldDescription) -> Result<Height
             })?;
             let image = HeightImage::read(&path, *low, *high)?;
             let [columns, rows] = image.size();
-            ([columns as u32 - 1, rows as u32 - 1], Formula::Image(image))
+            let own = [columns as u32 - 1, rows as u32 - 1];
+            (cells.unwrap_or(own), Formula::Image(image))
         }
     };
     let min = DVec2::new(field.origin.x, field.origin.y);

@@ -42,6 +42,37 @@ pub struct How<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
+/// The order in which a range of indices is traced: by bit-reversed offset.
+///
+/// The first coordinate of a Sobol' point is the bit-reversed index, scrambled digit by digit, so in this order
+/// neighbours have neighbouring first coordinates: the same emitter, the same table cell, nearly the same ray. They visit
+/// the same nodes of the search tree while these are in the cache. The sums do not depend on the order.
+struct Order {
+    start: u64,
+    length: u64,
+    bits: u32,
+}
+
+impl Order {
+    fn new(range: &Range<u64>) -> Self {
+        let length = range.end.saturating_sub(range.start);
+        Self { start: range.start, length, bits: length.max(2).next_power_of_two().trailing_zeros() }
+    }
+
+    /// Slots of the order: a power of two, some of them empty where the range is not one.
+    fn slots(&self) -> u64 {
+        1 << self.bits
+    }
+
+    fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
+        let Self { start, length, bits } = *self;
+        slots
+            .map(move |slot| slot.reverse_bits() >> (64 - bits))
+            .filter(move |offset| *offset < length)
+            .map(move |offset| start + offset)
+    }
+}
+
 /// Traces the photons of these indices; `sink` makes one handle a batch, all of which add to the same sums.
 pub fn trace_range<P: Points, S: Sink>(
     scene: &Scene,
@@ -55,7 +86,8 @@ pub fn trace_range<P: Points, S: Sink>(
         census: Census::default(),
         complete: true,
     };
-    let batches = (range.end - range.start).div_ceil(BATCH);
+    let order = Order::new(&range);
+    let batches = order.slots().div_ceil(BATCH);
     (0..batches)
         .into_par_iter()
         .fold(empty, |mut traced, batch| {
@@ -63,10 +95,10 @@ pub fn trace_range<P: Points, S: Sink>(
                 traced.complete = false;
                 return traced;
             }
-            let start = range.start + batch * BATCH;
-            let end = range.end.min(start + BATCH);
-            trace_batch(scene, points, start..end, how.reuse, &mut sink(), &mut traced);
-            (how.progress)(end - start);
+            let slots = batch * BATCH..order.slots().min((batch + 1) * BATCH);
+            let before = traced.ledger.total_emitted();
+            trace_batch(scene, points, order.indices(slots), how.reuse, &mut sink(), &mut traced);
+            (how.progress)(traced.ledger.total_emitted() - before);
             traced
         })
         .reduce(empty, |mut a, b| {
@@ -80,12 +112,12 @@ pub fn trace_range<P: Points, S: Sink>(
 fn trace_batch<P: Points, S: Sink>(
     scene: &Scene,
     points: &P,
-    range: Range<u64>,
+    indices: impl Iterator<Item = u64>,
     reuse: bool,
     sink: &mut S,
     traced: &mut Traced,
 ) {
-    for index in range {
+    for index in indices {
         let mut coordinates = Coordinates::new(points, index, reuse);
         let (emitter, emission) = scene.emitters.emit(&mut coordinates);
         traced.ledger.begin(emitter);
@@ -93,5 +125,20 @@ fn trace_batch<P: Points, S: Sink>(
         let end = walk(scene, emission, scene.start(emitter), &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
         traced.census.count(coordinates.drawn(), coordinates.drawn_for());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_index_is_visited_once_whatever_the_range() {
+        for range in [0..1, 0..2, 5..6, 0..1000, 7..1031, 1 << 40..(1 << 40) + 4097, 3..3] {
+            let order = Order::new(&range);
+            let mut seen: Vec<u64> = order.indices(0..order.slots()).collect();
+            seen.sort_unstable();
+            assert_eq!(seen, range.collect::<Vec<_>>());
+        }
     }
 }
