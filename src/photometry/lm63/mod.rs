@@ -197,7 +197,7 @@ fn compare_declared(photometry: &mut Photometry) {
     let declared = number.and_then(|word| word.parse::<f64>().ok()).filter(|&lm| lm > 0.0 && lm.is_finite());
     photometry.flux_declared_lm = declared;
     let flux_lm = flux::flux_lm(&photometry.web);
-    if flux_lm == 0.0 {
+    if flux_lm == 0.0 && photometry.multiplier > 0.0 {
         photometry.warnings.push(Diagnostic::new(Kind::Range, "a flux of 0 lm", "some intensity above 0"));
     }
     if let Some(declared) = declared.filter(|&lm| (flux_lm - lm).abs() > DECLARED_TOLERANCE * lm) {
