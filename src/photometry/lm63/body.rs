@@ -1,6 +1,6 @@
 //! The numbers: tilt table, the record of ten, the record of three, angles and candela.
 
-use super::super::web::{Axis, AxisNote, check_axes};
+use super::super::axes::{Axis, AxisNote, check_axes};
 use super::super::{PhotometricType, Revision, TiltTable, Web};
 use super::tokens::{Number, Tokens};
 use crate::error::{Diagnostic, Kind, Result};

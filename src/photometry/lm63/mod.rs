@@ -181,7 +181,11 @@ fn warn_about_rest(reader: &mut Reader) {
     } else if !blank(rest) {
         let surplus = reader.tokens.count();
         let word = reader.tokens.peek().map_or(String::new(), |(word, _)| quoted(word));
-        let found = if surplus > 0 { format!("{surplus} surplus numbers") } else { format!("text {word}") };
+        let found = match surplus {
+            0 => format!("text {word}"),
+            1 => "1 surplus number".to_owned(),
+            n => format!("{n} surplus numbers"),
+        };
         reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
     } else if !blank(behind_mark) {
         let found = "text behind the end-of-file mark".to_owned();
