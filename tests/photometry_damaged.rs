@@ -160,5 +160,7 @@ fn numbers_that_ask_for_memory_are_refused_at_once() {
     assert!(!survives(long.as_bytes()));
     let labels = "[MORE] x\n".repeat(1 << 18);
     assert!(!survives(labels.as_bytes()));
+    let labels = "x\n".repeat(1 << 20);
+    assert!(!survives(format!("{labels}TILT=NONE\n").as_bytes()));
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }

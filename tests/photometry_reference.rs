@@ -34,20 +34,26 @@ struct Row {
 /// Reference fluxes of a file: number, who gave it, relative tolerance, and whether it is a bilinear integral.
 fn references(name: &str, expected: &Value) -> Vec<(f64, String, f64, bool)> {
     let mut list = Vec::new();
-    let mut add = |value: &Value, who: &str, tolerance: f64, bilinear: bool| {
+    let add = |list: &mut Vec<_>, value: &Value, who: &str, tolerance: f64, bilinear: bool| {
         if let Some(flux_lm) = value.as_f64() {
             list.push((flux_lm, who.to_owned(), tolerance, bilinear));
         }
     };
-    add(&expected["ref"]["photometric_toolbox"]["flux_lm"], "photometric_toolbox", 1e-5, false);
+    let by = &expected["ref"];
+    add(&mut list, &by["photometric_toolbox"]["flux_lm"], "photometric_toolbox", 1e-5, false);
     if name != DECLARES_WRONGLY {
-        add(&expected["ref"]["declared_in_file"]["flux_lm"], "declared", 3e-3, false);
+        add(&mut list, &by["declared_in_file"]["flux_lm"], "declared", 3e-3, false);
     }
     let basis = expected["expected_flux_basis"].as_str().unwrap_or("");
     // luxpy interpolates the table bilinearly and integrates that: compared with the same integral, not with the
     // trapezoid, which differs by 0.25 % for the 10 degree steps of mdl__example_modules.
+    // The other bases are the two above again.
+    if !basis.starts_with("photompy") && !basis.starts_with("luxpy") && !basis.starts_with("notebook") {
+        assert!(!list.is_empty() || basis.is_empty(), "{name}: an unknown reference {basis}");
+        return list;
+    }
     let tolerance = if basis.starts_with("photompy") { 1e-2 } else { 3e-3 };
-    add(&expected["expected_flux_lm"], basis, tolerance, basis.starts_with("luxpy"));
+    add(&mut list, &expected["expected_flux_lm"], basis, tolerance, basis.starts_with("luxpy"));
     list
 }
 
@@ -55,16 +61,17 @@ fn check(name: &str, photometry: &Photometry, expected: &Value) -> Row {
     let summary = Summary::new(photometry);
     let mut faults = Vec::new();
     let (n_v, n_h) = (summary.vertical_angles, summary.horizontal_angles);
-    for (what, got) in [("n_v", n_v), ("n_h", n_h)] {
-        let wanted = expected["expected_angles"][what].as_u64().unwrap();
+    for (what, axis, got) in [("n_v", "v", n_v), ("n_h", "h", n_h)] {
+        // Where no two tools agree on the counts, those of the file's own header.
+        let header = || expected["survey"][axis][2].as_u64();
+        let wanted = expected["expected_angles"][what].as_u64().or_else(header).unwrap();
         if wanted != got as u64 {
             faults.push(format!("{what} {got}, expected {wanted}"));
         }
     }
-    if let Some(max) = expected["expected_max_cd"].as_f64() {
-        if (summary.max_candela - max).abs() > 1e-12 * max {
-            faults.push(format!("max {} cd, expected {max}", summary.max_candela));
-        }
+    let max = expected["expected_max_cd"].as_f64().unwrap_or(summary.max_candela);
+    if (summary.max_candela - max).abs() > 1e-12 * max {
+        faults.push(format!("max {} cd, expected {max}", summary.max_candela));
     }
     let bilinear = flux::bilinear_lm(&photometry.web.full_grid());
     let references = references(name, expected);

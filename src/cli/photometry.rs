@@ -136,3 +136,28 @@ fn degrees(angle_deg: Option<f64>) -> String {
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::photometry::lm63;
+
+    #[test]
+    fn the_report_names_quantities_and_units() {
+        let text = "IESNA91\n[LUMINAIRE] a\x1b[31mb\n[MORE] c\nTILT=NONE\n1 -1 2 3 1 1 2 -0.1 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0 9\n";
+        let photometry = lm63::parse(text.as_bytes(), "small.ies").unwrap();
+        let report = report_text(&photometry, &Summary::new(&photometry));
+        for line in [
+            "luminaire           a [31mb c",
+            "flux                       147.0 lm   value x multiplier, trapezoid",
+            "flux with factors           66.1 lm   x ballast 0.5 x ballast-lamp 0.9",
+            "maximum                    200.0 cd   at V 0 deg, H 0 deg",
+            "beam angle (50 %)           40.0 deg  principal plane",
+            "luminous opening    disk, 0.100 x 0.100 x 0.000 m (width x length x height)",
+            "input power                 10.0 W    6.6 lm/W",
+        ] {
+            assert!(report.lines().any(|l| l == line), "{line}\n{report}");
+        }
+        assert!(report.contains("surplus") && !report.contains('\u{1b}'), "{report}");
+    }
+}

@@ -99,3 +99,59 @@ impl Summary {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::photometry::lm63;
+
+    const SMALL: &str = "IESNA91\nTILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0\n";
+
+    #[test]
+    fn the_record_has_the_keys_of_the_interface_and_no_others() {
+        let summary = Summary::new(&lm63::parse(SMALL.as_bytes(), "small.ies").unwrap());
+        let json = serde_json::to_value(&summary).unwrap();
+        let mut keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
+        keys.sort_unstable();
+        let mut expected = [
+            "format",
+            "revision",
+            "photometric_type",
+            "flux_lm",
+            "flux_with_factors_lm",
+            "flux_emitted_lm",
+            "flux_declared_lm",
+            "max_candela",
+            "max_at",
+            "vertical_angles",
+            "horizontal_angles",
+            "symmetry",
+            "luminous_opening",
+            "beam_angle_deg",
+            "field_angle_deg",
+            "input_watts",
+            "efficacy_lm_w",
+            "warnings",
+        ];
+        expected.sort_unstable();
+        assert_eq!(keys, expected);
+        assert!(json["max_at"]["vertical_deg"].is_number() && json["max_at"]["horizontal_deg"].is_number());
+        assert!(json["luminous_opening"]["shape"].is_string());
+        assert_eq!(json["luminous_opening"]["size_m"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn fluxes_count_what_their_names_say() {
+        let summary = Summary::new(&lm63::parse(SMALL.as_bytes(), "small.ies").unwrap());
+        // A cone of 200 cd falling linearly to 0 at 40 degrees. Trapezoid: 2 pi 100 (1 - cos 40); exact:
+        // 2 pi 200 Int (1 - t/T) sin t dt = 2 pi 200 (1 - sin T / T).
+        let edge = 40f64.to_radians();
+        let trapezoid = std::f64::consts::TAU * 100.0 * (1.0 - edge.cos());
+        let exact = std::f64::consts::TAU * 200.0 * (1.0 - edge.sin() / edge) * 0.45;
+        assert!((summary.flux_lm - trapezoid).abs() < 1e-12 * trapezoid);
+        assert!((summary.flux_with_factors_lm - 0.45 * trapezoid).abs() < 1e-12 * trapezoid);
+        assert!((summary.flux_emitted_lm - exact).abs() < 1e-12 * exact);
+        assert_eq!((summary.max_candela, summary.beam_angle_deg), (200.0, Some(40.0)));
+        assert_eq!(summary.efficacy_lm_w, Some(summary.flux_with_factors_lm / 10.0));
+    }
+}

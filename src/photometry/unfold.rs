@@ -1,6 +1,6 @@
 //! The web unfolded over the sphere, for sampling and integration.
 
-use super::web::Fold;
+use super::axes::Fold;
 use super::{PhotometricType, Web};
 use crate::units::RADIANS_PER_DEGREE;
 use std::f64::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 //! The numbers: tilt table, the record of ten, the record of three, angles and candela.
 
-use super::super::web::{Axis, AxisNote, check_axes};
+use super::super::axes::{Axis, AxisNote, check_axes};
 use super::super::{PhotometricType, Revision, TiltTable, Web};
 use super::tokens::{Number, Tokens};
 use crate::error::{Diagnostic, Kind, Result};
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
     pub fn tilt_table(&mut self) -> Result<TiltTable> {
         let geometry = self.code("lamp-to-luminaire geometry", &[1, 2, 3], "1, 2 or 3")?;
         let n = self.count("number of tilt angles")?;
-        self.tokens.require(2 * n as u64, "tilt angles and factors")?;
+        self.tokens.require(2 * n as u64, |_| format!("one of {n} tilt angles and {n} factors"))?;
         let angles = self.tokens.numbers(n, "tilt angle")?;
         let factors = self.tokens.numbers(n, "tilt factor")?;
         let mut falling = angles.windows(2).filter(|w| w[1].value <= w[0].value);
@@ -180,10 +180,15 @@ impl<'a> Reader<'a> {
     fn require_table(&self, n_v: usize, n_h: usize) -> Result<()> {
         let (n_v, n_h) = (n_v as u64, n_h as u64);
         let needed = 3 + n_v + n_h + n_v * n_h;
-        let what = format!(
-            "ballast factor, field 12, input watts, {n_v} vertical and {n_h} horizontal angles, {n_v} x {n_h} candela"
-        );
-        self.tokens.require(needed, &what).map_err(|d| {
+        let name = |i: u64| match i {
+            0 => "the ballast factor".to_owned(),
+            1 => "field 12".to_owned(),
+            2 => "the input watts".to_owned(),
+            _ if i < 3 + n_v => format!("vertical angle {} of {n_v}", i - 2),
+            _ if i < 3 + n_v + n_h => format!("horizontal angle {} of {n_h}", i - 2 - n_v),
+            _ => format!("candela {} of {n_h} x {n_v}", i - 2 - n_v - n_h),
+        };
+        self.tokens.require(needed, name).map_err(|d| {
             if d.kind() == Kind::Missing && self.tokens.count() + 3 == needed {
                 d.hint("just three are missing: is the record of ballast factor, field 12 and input watts there?")
             } else {

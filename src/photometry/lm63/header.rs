@@ -9,6 +9,9 @@ use nom::combinator::rest;
 use nom::sequence::delimited;
 use nom::{IResult, Parser};
 
+/// Label lines that are kept at most: real files have a few dozen.
+const MAX_LABELS: usize = 10_000;
+
 /// Everything up to and with the TILT line.
 #[derive(Debug)]
 pub(super) struct Header<'a> {
@@ -77,7 +80,7 @@ fn revision(line: &str) -> Option<(Revision, bool)> {
 /// Reads up to and with the TILT line.
 ///
 /// # Errors
-/// [`Kind::Missing`] when there is no TILT line, at the first line of numbers.
+/// [`Kind::Missing`] when there is no TILT line, at the first line of numbers; [`Kind::Limit`] for a flood of labels.
 pub(super) fn read_header(text: &str) -> Result<Header<'_>> {
     let mut header = Header {
         revision: Revision::Y1986,
@@ -112,6 +115,14 @@ pub(super) fn read_header(text: &str) -> Result<Header<'_>> {
             && line.split([' ', '\t', ',']).all(|w| w.is_empty() || w.parse::<f64>().is_ok())
         {
             numbers_at = Some(offset);
+        }
+        if header.labels.len() == MAX_LABELS {
+            let d = Diagnostic::new(
+                Kind::Limit,
+                "one more label line",
+                format!("at most {MAX_LABELS} label lines"),
+            );
+            return Err(d.at(line_column(text, offset).0, 1));
         }
         add_label(&mut header.labels, line);
     }

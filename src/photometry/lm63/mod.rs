@@ -181,7 +181,11 @@ fn warn_about_rest(reader: &mut Reader) {
     } else if !blank(rest) {
         let surplus = reader.tokens.count();
         let word = reader.tokens.peek().map_or(String::new(), |(word, _)| quoted(word));
-        let found = if surplus > 0 { format!("{surplus} surplus numbers") } else { format!("text {word}") };
+        let found = match surplus {
+            0 => format!("text {word}"),
+            1 => "1 surplus number".to_owned(),
+            n => format!("{n} surplus numbers"),
+        };
         reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
     } else if !blank(behind_mark) {
         let found = "text behind the end-of-file mark".to_owned();
@@ -197,7 +201,7 @@ fn compare_declared(photometry: &mut Photometry) {
     let declared = number.and_then(|word| word.parse::<f64>().ok()).filter(|&lm| lm > 0.0 && lm.is_finite());
     photometry.flux_declared_lm = declared;
     let flux_lm = flux::flux_lm(&photometry.web);
-    if flux_lm == 0.0 {
+    if flux_lm == 0.0 && photometry.multiplier > 0.0 {
         photometry.warnings.push(Diagnostic::new(Kind::Range, "a flux of 0 lm", "some intensity above 0"));
     }
     if let Some(declared) = declared.filter(|&lm| (flux_lm - lm).abs() > DECLARED_TOLERANCE * lm) {

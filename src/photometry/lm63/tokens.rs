@@ -138,18 +138,21 @@ impl<'a> Tokens<'a> {
     }
 
     /// Checks, before anything is allocated, that `n` more numbers follow. A word in their midst is refused at its
-    /// place, the end of the file at the end.
-    pub fn require(&self, n: u64, what: &str) -> Result<()> {
+    /// place, the end of the file at the end; `name(i)` names the i-th of them in the message.
+    pub fn require(&self, n: u64, name: impl Fn(u64) -> String) -> Result<()> {
         let mut ahead = *self;
-        let mut have = 0;
-        while have < n {
+        for have in 0..n {
             if ahead.peek().is_none() {
                 let found = format!("the end of the file after {have} of {n} numbers");
-                let d = Diagnostic::new(Kind::Missing, found, format!("{n} numbers: {what}"));
+                let d =
+                    Diagnostic::new(Kind::Missing, found, format!("{n} numbers; the next is {}", name(have)));
                 return Err(self.end_of_numbers(d));
             }
-            ahead.number(what)?;
-            have += 1;
+            if let Err(refused) = ahead.number("") {
+                // Read once more, for the message: names are made for the one number that needs it.
+                ahead.number(&name(have))?;
+                return Err(refused);
+            }
         }
         Ok(())
     }
@@ -224,7 +227,7 @@ mod tests {
                 "{bad}: {error}"
             );
         }
-        let error = Tokens::new("1 2\r3 ", 0).require(4, "values").unwrap_err();
+        let error = Tokens::new("1 2\r3 ", 0).require(4, |i| format!("value {i}")).unwrap_err();
         assert_eq!((error.kind(), error.line(), error.column()), (Kind::Missing, Some(2), Some(2)));
     }
 }
