@@ -309,10 +309,15 @@ fn draw_bar(canvas: &mut Canvas, layout: &Layout, axis: &Axis, labels: &[(f64, S
     }
     frame(canvas, layout.bar);
     let [x, y] = [(left + width) as f64, top as f64];
+    let mut free_below = f64::INFINITY;
     for (place, label) in labels {
         let at = crisp(y + (1.0 - place) * height as f64);
         canvas.line([x + 1.0, at], [x + TICK_LENGTH, at], 1.0, ink());
-        canvas.text([x + TICK_LENGTH + 5.0, at + 4.0], label, &TextStyle::new(TICK_SIZE, ink()));
+        // On a short scale the numbers would run into each other.
+        if at < free_below {
+            canvas.text([x + TICK_LENGTH + 5.0, at + 4.0], label, &TextStyle::new(TICK_SIZE, ink()));
+            free_below = at - TICK_SIZE - 2.0;
+        }
     }
     let unit = if axis.log { "lx (log)" } else { "lx" };
     canvas.text([left as f64, y - 12.0], unit, &TextStyle::new(TEXT_SIZE, ink()));

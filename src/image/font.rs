@@ -14,7 +14,7 @@ const UNITS_PER_EM: f64 = 20.0;
 /// Free space after each glyph box, units.
 const SPACING: f64 = 3.3;
 /// Width of a regular pen, units.
-const PEN: f64 = 1.65;
+const PEN: f64 = 1.8;
 
 /// Part of a line of text laid out in pixels, origin at the pen's start, y downwards.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,9 +30,9 @@ pub fn has_glyph(c: char) -> bool {
     glyph(c).is_some()
 }
 
-/// Width of a regular pen at this type size, in pixels.
+/// Width of a regular pen at this type size, in pixels; never less than one, which would be grey.
 pub fn pen_width_px(size_px: f64) -> f64 {
-    size_px * PEN / UNITS_PER_EM
+    (size_px * PEN / UNITS_PER_EM).max(1.0)
 }
 
 /// Width of a line of text in pixels; `hinted` as in [`strokes`].

@@ -134,7 +134,7 @@ fn tick(multiple: i64, index: i64, exponent: i32) -> Tick {
     Tick { value, label }
 }
 
-/// 1, 2, 5 times powers of ten from `low` to `high`, powers of ten alone where that is more than ten marks.
+/// 1, 2, 5 times powers of ten from `low` to `high`, powers of ten alone where that is more than fifteen marks.
 pub fn log_ticks(low: f64, high: f64) -> Vec<Tick> {
     if !(low > 0.0 && high > low && high.is_finite()) {
         return Vec::new();
@@ -149,7 +149,7 @@ pub fn log_ticks(low: f64, high: f64) -> Vec<Tick> {
             .collect()
     };
     let all = marks(&[1, 2, 5]);
-    if all.len() <= 10 { all } else { marks(&[1]) }
+    if all.len() <= 15 { all } else { marks(&[1]) }
 }
 
 /// The nearest 1, 2 or 5 times a power of ten at or above (`up`) or at or below a positive value.

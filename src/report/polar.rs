@@ -4,7 +4,7 @@
 //! A curve shows a plane through the luminaire: positive angles on the right, negative ones, the opposite half plane, on
 //! the left; C0-C180 solid, C90-C270 dashed. The upper half is left out when nothing is emitted there.
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use crate::error::Result;
@@ -44,8 +44,8 @@ const TEXT_SIZE: f64 = 13.0;
 const TICK_SIZE: f64 = 12.0;
 const LINE_HEIGHT: f64 = 20.0;
 const RAY_STEP_DEG: usize = 15;
-/// Rings are chosen to be about this many.
-const RINGS: usize = 5;
+/// Most rings there are.
+const RINGS: usize = 7;
 
 /// The measures of one diagram.
 struct Frame {
@@ -103,7 +103,7 @@ impl PolarPlot {
         // Subnormal candela have no round numbers.
         let max = if max > f64::MIN_POSITIVE / f64::EPSILON { max } else { 1.0 };
         let step = linear_ticks(0.0, max, RINGS).get(1).map_or(max, |tick| tick.value);
-        let rings: Vec<Tick> = linear_ticks(0.0, (max / step).ceil() * step, RINGS + 1).split_off(1);
+        let rings: Vec<Tick> = linear_ticks(0.0, (max / step).ceil() * step, RINGS).split_off(1);
         let outer_cd = rings.last().map_or(max, |tick| tick.value).max(max);
         let above = if full { RADIUS + 30.0 } else { 28.0 };
         Frame { centre: [0.5 * WIDTH as f64, MARGIN + 30.0 + above], full, outer_cd, rings }
@@ -204,17 +204,17 @@ fn angle_label([cx, cy]: [f64; 2], side: f64, angle_deg: usize) -> Shape {
     text(at, &label, TextStyle::new(TICK_SIZE, ink()).anchored(Anchor::Middle))
 }
 
-/// Candela along the horizontal to the right, where most luminaires emit least; above the line, on white.
+/// Candela along the horizontal to the right, where most luminaires emit least; above the line, inside their ring.
 fn draw_ring_labels(shapes: &mut Vec<Shape>, frame: &Frame) {
-    let style = TextStyle::new(TICK_SIZE, Colour::grey(90)).anchored(Anchor::Middle);
+    let style = TextStyle::new(TICK_SIZE, Colour::grey(90)).anchored(Anchor::End);
     let baseline = frame.centre[1] - 5.0;
-    let mut labels: Vec<(f64, String)> = vec![(0.0, "cd".to_owned())];
-    labels.extend(frame.rings.iter().map(|r| (r.value, r.label.clone())));
-    for (candela, label) in labels {
-        let [x, _] = frame.place(FRAC_PI_2 * (180.0 / PI), candela);
-        let width = font::width_px(&label, TICK_SIZE, true);
+    for (i, ring) in frame.rings.iter().enumerate() {
+        let unit = if i + 1 == frame.rings.len() { " cd" } else { "" };
+        let label = format!("{}{unit}", ring.label);
+        let x = frame.centre[0] + ring.value / frame.outer_cd * RADIUS - 4.0;
         if frame.full {
-            let area = [x - 0.5 * width - 3.0, baseline - 11.0, width + 6.0, 14.0];
+            let width = font::width_px(&label, TICK_SIZE, true);
+            let area = [x - width - 1.0, baseline - 10.0, width + 2.0, 12.0];
             shapes.push(Shape::Rect { area, colour: Colour::WHITE });
         }
         shapes.push(text([x, baseline], &label, style));
@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn rings_are_round_and_reach_the_maximum() {
-        for (max, top) in [(1000.0, 1000.0), (1001.0, 1200.0), (87.0, 100.0), (0.013, 0.014), (5.3e6, 6e6)] {
+        for (max, top) in [(1000.0, 1000.0), (1001.0, 1200.0), (87.0, 100.0), (0.013, 0.014), (5.3e6, 6e6), (1401.0, 1500.0)] {
             let frame = plot(vec![(0.0, max)]).frame();
             assert_eq!(frame.outer_cd, top, "for {max}");
             assert!((3..=8).contains(&frame.rings.len()), "{:?}", frame.rings);
