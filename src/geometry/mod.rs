@@ -5,6 +5,9 @@
 //! There is no absolute epsilon: every tolerance is a rounding bound computed from the numbers at hand, so a scene and
 //! the same scene times a power of two give the same hits bit for bit.
 
+// `!(x > 0.0)` refuses NaN as well, which `x <= 0.0` would let pass.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 mod box_mesh;
 mod bvh;
 mod coincident;

@@ -17,6 +17,8 @@ struct Best {
     primitive: u32,
     surface: u32,
     crossing: Crossing,
+    /// The triangle, kept from the leaf: fetching it again from the mesh would miss the cache.
+    corners: [[f64; 3]; 3],
 }
 
 /// Distances of skipped candidates, kept until it is known which of them lie before the hit.
@@ -57,7 +59,7 @@ impl Skipped {
 struct Search<'a, const LENIENT: bool> {
     geometry: &'a Geometry,
     ray: &'a Ray,
-    boxes: Option<&'a BoxRay>,
+    boxes: &'a BoxRay,
     at: &'a Whereabouts,
     only: Option<SurfaceId>,
     best: Option<Best>,
@@ -67,11 +69,17 @@ struct Search<'a, const LENIENT: bool> {
 }
 
 impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
-    fn new(geometry: &'a Geometry, ray: &'a Ray, at: &'a Whereabouts, only: Option<SurfaceId>) -> Self {
+    #[inline(always)]
+    fn new(
+        geometry: &'a Geometry,
+        (ray, boxes): (&'a Ray, &'a BoxRay),
+        at: &'a Whereabouts,
+        only: Option<SurfaceId>,
+    ) -> Self {
         Self {
             geometry,
             ray,
-            boxes: None,
+            boxes,
             at,
             only,
             best: None,
@@ -83,7 +91,13 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
 
     /// Judges a crossing at `crossing.t`; `bound` is asked for only near the origin.
     #[inline(always)]
-    fn consider(&mut self, primitive: u32, surface: u32, crossing: Crossing, bound: impl FnOnce() -> f64) {
+    fn consider(
+        &mut self,
+        (primitive, surface): (u32, u32),
+        corners: &[[f64; 3]; 3],
+        crossing: Crossing,
+        bound: impl FnOnce() -> f64,
+    ) {
         let t = crossing.t;
         let cap = self.geometry.bound_cap;
         let info = &self.geometry.info[surface as usize];
@@ -109,11 +123,9 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             None => true,
         };
         if first {
-            self.best = Some(Best { t, rank: info.rank, primitive, surface, crossing });
+            self.best = Some(Best { t, rank: info.rank, primitive, surface, crossing, corners: *corners });
             self.nearest_t = t;
-            if let Some(boxes) = self.boxes {
-                self.limit = boxes.limit(t);
-            }
+            self.limit = self.boxes.limit(t);
         }
     }
 
@@ -131,7 +143,9 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             return;
         }
         let ray = self.ray;
-        self.consider(primitive, surface, crossing, || view.bound(ray, coordinate_error(&corners, ray)));
+        self.consider((primitive, surface), &corners, crossing, || {
+            view.bound(ray, coordinate_error(&corners, ray))
+        });
     }
 
     #[cold]
@@ -142,7 +156,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             return;
         }
         let ray = self.ray;
-        self.consider(primitive, surface, crossing, || view.bound(ray, error));
+        self.consider((primitive, surface), corners, crossing, || view.bound(ray, error));
     }
 
     #[inline(never)]
@@ -157,7 +171,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
         };
         for root in roots.into_iter().flatten() {
             let crossing = Crossing { t: root.t, weights: [0.0; 2], front: root.front };
-            self.consider(primitive, surface, crossing, || root.bound);
+            self.consider((primitive, surface), &[[0.0; 3]; 3], crossing, || root.bound);
         }
     }
 
@@ -235,12 +249,14 @@ impl Geometry {
         tree: bool,
     ) -> Option<Hit> {
         let ray = Ray::new(origin, direction)?;
-        let mut search = Search::<false>::new(self, &ray, at, None);
+        let boxes = BoxRay::new(&ray, &self.normalisation)?;
+        let rays = (&ray, &boxes);
+        let mut search = Search::<false>::new(self, rays, at, None);
         self.run(&mut search, tree);
         *skipped += search.skipped.before(search.nearest_t);
         let mut best = search.best;
         if !at.behind().is_empty() {
-            best = self.not_through_the_rim(best, &ray, at, skipped, tree);
+            best = self.not_through_the_rim(best, rays, at, skipped, tree);
         }
         best.map(|b| self.finish(&b, &ray))
     }
@@ -251,7 +267,7 @@ impl Geometry {
     fn not_through_the_rim(
         &self,
         best: Option<Best>,
-        ray: &Ray,
+        rays: (&Ray, &BoxRay),
         at: &Whereabouts,
         skipped: &mut u64,
         tree: bool,
@@ -259,11 +275,9 @@ impl Geometry {
         let only = match &best {
             None => None,
             Some(b) => {
-                let left = at.surface_left()?;
-                if left.0 == b.surface || !at.is_behind(left) {
-                    return best;
-                }
-                let mut search = Search::<false>::new(self, ray, at, Some(left));
+                let entered = at.surface_left().filter(|&s| s.0 != b.surface && at.is_behind(s));
+                let Some(left) = entered else { return best };
+                let mut search = Search::<false>::new(self, rays, at, Some(left));
                 self.run(&mut search, tree);
                 if search.best.is_some() {
                     return best;
@@ -271,7 +285,7 @@ impl Geometry {
                 Some(left)
             }
         };
-        let mut search = Search::<true>::new(self, ray, at, only);
+        let mut search = Search::<true>::new(self, rays, at, only);
         self.run(&mut search, tree);
         match (best, search.best) {
             (Some(b), Some(s)) if b.t < s.t => best,
@@ -284,40 +298,36 @@ impl Geometry {
     }
 
     #[inline(always)]
-    fn run<'a, const LENIENT: bool>(&'a self, search: &mut Search<'a, LENIENT>, tree: bool) {
+    fn run<const LENIENT: bool>(&self, search: &mut Search<'_, LENIENT>, tree: bool) {
         if !tree {
             for block in &self.tree.blocks {
                 search.block(block);
             }
             return;
         }
-        let Some(boxes) = BoxRay::new(search.ray, &self.normalisation) else { return };
-        let mut with =
-            Search { boxes: Some(&boxes), ..Search::new(self, search.ray, search.at, search.only) };
         #[cfg(target_arch = "x86_64")]
         if self.avx2 {
             // SAFETY: `avx2` is set only where the processor was found to have it.
             #[allow(unsafe_code)]
             unsafe {
-                self.walk_avx2(&boxes, &mut with);
+                self.walk_avx2(search);
             }
-            search.take(with);
             return;
         }
-        self.walk(&boxes, &mut with);
-        search.take(with);
+        self.walk(search);
     }
 
     /// The walk compiled for AVX2. No fused operations: the same bits as without.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn walk_avx2<const LENIENT: bool>(&self, boxes: &BoxRay, search: &mut Search<'_, LENIENT>) {
-        self.walk(boxes, search);
+    fn walk_avx2<const LENIENT: bool>(&self, search: &mut Search<'_, LENIENT>) {
+        self.walk(search);
     }
 
     /// The stack holds 7 entries a level and one more; the tree's depth picks its size.
     #[inline(always)]
-    fn walk<const LENIENT: bool>(&self, boxes: &BoxRay, search: &mut Search<'_, LENIENT>) {
+    fn walk<const LENIENT: bool>(&self, search: &mut Search<'_, LENIENT>) {
+        let boxes = search.boxes;
         match self.tree.depth {
             0..=9 => self.tree.walk::<64, _>(boxes, search),
             10..=18 => self.tree.walk::<128, _>(boxes, search),
@@ -333,18 +343,16 @@ impl Geometry {
         let face = best.primitive - info.first_primitive;
         let [v, w] = best.crossing.weights;
         let facing = if best.crossing.front { -ray.direction } else { ray.direction };
-        let flat = |corners: [DVec3; 3]| {
-            let [a, b, c] = corners;
+        let flat = || {
+            let [a, b, c] = best.corners.map(DVec3::from_array);
             let (ab, ac) = (b - a, c - a);
             let normal = ab.cross(ac).try_normalize().unwrap_or(facing);
-            let arrays = corners.map(|p| p.to_array());
-            let bound = View::new(&arrays, ray).bound(ray, coordinate_error(&arrays, ray));
+            let bound = View::new(&best.corners, ray).bound(ray, coordinate_error(&best.corners, ray));
             (a + ab * v + ac * w, normal, bound)
         };
         let along = ray.origin + ray.direction * best.t;
         let (position, normal, bound) = match shape {
-            Shape::Mesh(m) => flat(m.triangle(face as usize)),
-            Shape::Rectangle(r) => flat(r.triangle(face as usize)),
+            Shape::Mesh(_) | Shape::Rectangle(_) => flat(),
             Shape::Sphere(s) => {
                 let p = s.project(along);
                 (p, s.normal(p), s.exit(ray).bound)
@@ -370,13 +378,5 @@ impl Geometry {
             front: best.crossing.front,
             closed: info.closed,
         }
-    }
-}
-
-impl<const LENIENT: bool> Search<'_, LENIENT> {
-    fn take(&mut self, other: Search<'_, LENIENT>) {
-        self.best = other.best;
-        self.nearest_t = other.nearest_t;
-        self.skipped = other.skipped;
     }
 }

@@ -181,15 +181,8 @@ impl View {
 /// Bound of the rounding error [m] of a sheared coordinate of this triangle.
 #[inline(always)]
 pub(crate) fn coordinate_error(triangle: &[[f64; 3]; 3], ray: &Ray) -> f64 {
-    let mut size: f64 = 0.0;
-    for corner in triangle {
-        for k in 0..3 {
-            size = size.max(corner[k].abs());
-        }
-    }
-    for k in 0..3 {
-        size = size.max(ray.o[k].abs());
-    }
+    let numbers = triangle.iter().flatten().chain(&ray.o);
+    let size = numbers.fold(0.0f64, |m, x| m.max(x.abs()));
     // |v - o| is at most twice the largest coordinate.
     GAMMA * 3.0 * size
 }

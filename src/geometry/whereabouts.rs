@@ -23,9 +23,12 @@ struct Met {
     primitive: u32,
     surface: SurfaceId,
     side: Side,
+    /// Came out of a closed surface here.
+    emerged: bool,
 }
 
-const NOBODY: Met = Met { primitive: u32::MAX, surface: SurfaceId(u32::MAX), side: Side::Front };
+const NOBODY: Met =
+    Met { primitive: u32::MAX, surface: SurfaceId(u32::MAX), side: Side::Front, emerged: false };
 
 /// The side state of one photon.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +83,8 @@ impl Whereabouts {
             self.met.copy_within(1.., 0);
             n -= 1;
         }
-        self.met[n] = Met { primitive: hit.primitive, surface: hit.surface, side };
+        let emerged = hit.closed && !hit.front && side == Side::Front;
+        self.met[n] = Met { primitive: hit.primitive, surface: hit.surface, side, emerged };
         self.met_len = n as u8 + 1;
         if hit.closed {
             match side {
@@ -152,9 +156,16 @@ impl Whereabouts {
     #[inline(always)]
     pub(crate) fn judge(&self, surface: SurfaceId, closed: bool, front: bool, here: bool) -> Verdict {
         let mut side = self.side_of_closed(surface, closed);
-        if side.is_none() && here {
+        if here && self.met_len > 0 {
             let met = &self.met[..usize::from(self.met_len)];
-            side = met.iter().rev().find(|m| m.surface == surface).map(|m| m.side);
+            if side.is_none() {
+                side = met.iter().rev().find(|m| m.surface == surface).map(|m| m.side);
+            }
+            // At a silhouette's vertex rounding can show front, back and front again. In and out at one place is
+            // all a line can do there.
+            if front && met.iter().any(|m| m.emerged && m.surface == surface) {
+                return Verdict::Contradicts;
+            }
         }
         match side {
             Some(side) if (side == Side::Front) != front => Verdict::Contradicts,
