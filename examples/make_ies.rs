@@ -36,15 +36,16 @@ pub fn files() -> Vec<(&'static str, String)> {
 /// The luminaire of the built-in scene: a floodlight with two lobes and shields.
 ///
 /// Type C, 37 V angles by 2.5 degrees, 24 H angles by 15 (the circle is closed by the reader). Where it shines it
-/// spans one decade: I = 1735 x 10^(s - 1) cd, s between 0 and 1 the sum of two Gaussian lobes (half width 11 and 14
-/// degrees) and a ripple. Shields: three whole meridians and three blocks are dark, and everything beyond 70 degrees.
+/// spans one decade: I = 4250 x 10^(s - 1) cd, s the sum of two Gaussian lobes (half width 13 and 12 degrees) and a
+/// ripple; dark where s is below 0.05. Shields: three whole meridians and three blocks are dark, and everything beyond
+/// 70 degrees.
 fn wavy_glass() -> String {
     let shielded = |v: f64, h: f64| {
         let meridian = [120.0, 300.0, 315.0].contains(&h);
         let block = |v0: f64, v1: f64, planes: &[f64]| v >= v0 && v <= v1 && planes.contains(&h);
-        let blocks = block(35.0, 50.0, &[345.0, 0.0, 15.0])
-            || block(52.5, 65.0, &[60.0, 75.0, 90.0])
-            || block(10.0, 20.0, &[225.0, 240.0]);
+        let blocks = block(10.0, 17.5, &[345.0, 0.0, 15.0])
+            || block(20.0, 27.5, &[60.0, 75.0])
+            || block(7.5, 15.0, &[225.0, 240.0]);
         meridian || blocks || v > 70.0
     };
     let intensity = |v: f64, h: f64| {
@@ -52,9 +53,9 @@ fn wavy_glass() -> String {
             return 0.0;
         }
         let lobe = |v0: f64, h0: f64, half: f64| gauss(angle_between_deg(v, h, v0, h0) / half);
-        let ripple = 0.12 * sin_deg(v) * sin_deg(5.0 * h + 4.0 * v);
-        let s = 0.06 + 0.94 * lobe(22.0, 40.0, 11.0) + 0.80 * lobe(41.0, 205.0, 14.0) + ripple;
-        1735.0 * pow(10.0, s.clamp(0.0, 1.0) - 1.0)
+        let ripple = 0.05 * sin_deg(v) * sin_deg(5.0 * h + 4.0 * v);
+        let s = 0.94 * lobe(12.0, 40.0, 13.0) + 0.80 * lobe(15.0, 205.0, 12.0) + ripple;
+        if s < 0.05 { 0.0 } else { 4250.0 * pow(10.0, s.min(1.0) - 1.0) }
     };
     let table = Table { vertical: steps(0.0, 2.5, 37), horizontal: steps(0.0, 15.0, 24), decimals: 1 };
     let file = File {

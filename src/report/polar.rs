@@ -290,7 +290,14 @@ mod tests {
 
     #[test]
     fn rings_are_round_and_reach_the_maximum() {
-        for (max, top) in [(1000.0, 1000.0), (1001.0, 1200.0), (87.0, 100.0), (0.013, 0.014), (5.3e6, 6e6), (1401.0, 1500.0)] {
+        for (max, top) in [
+            (1000.0, 1000.0),
+            (1001.0, 1200.0),
+            (87.0, 100.0),
+            (0.013, 0.014),
+            (5.3e6, 6e6),
+            (1401.0, 1500.0),
+        ] {
             let frame = plot(vec![(0.0, max)]).frame();
             assert_eq!(frame.outer_cd, top, "for {max}");
             assert!((3..=8).contains(&frame.rings.len()), "{:?}", frame.rings);
