@@ -113,7 +113,7 @@ fn what_is_odd_but_traceable_is_warned_about_by_number() {
         ("f 1 2 6\n", "duplicate"),
         ("f 1 2 6\n", "edges of more than two faces"),
         ("f 1 2 6\n", "inconsistent orientation"),
-        ("v 0 0 5\nv 2 0 5\nv 0.2 0.2 5\nv 0 2 5\nf 9 10 11 12\n", "concave"),
+        ("v 0 0 5\nv 2 0 5\nv 0.2 0.2 5\nv 0 2 5\nf 10 11 12 9\n", "concave"),
         ("curv 0 1 1 2\n", "curv"),
     ] {
         let (_, warnings) = parse(&format!("{CUBE}{more}"), &ObjOptions::default()).unwrap();
