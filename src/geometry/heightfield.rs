@@ -222,11 +222,13 @@ mod tests {
         assert_eq!(mesh.triangles().len(), 40 * 60 * 2);
         assert_eq!(mesh.topology().open_edges, 2 * (40 + 60));
         assert_eq!(mesh.topology().inconsistent_edges, 0);
+        // Normals within a facet turn by at most the curvature a k^2 = 6.17 / m times half its diagonal.
+        let least = (6.17 * 0.0354f64).cos();
         for face in 0..mesh.triangles().len() {
             let [a, b, c] = mesh.triangle(face);
             let facet = (b - a).cross(c - a).normalize();
             let smooth = mesh.shading_normal(face, [1.0 / 3.0; 2], facet);
-            assert!(facet.z > 0.0 && facet.dot(smooth) > 0.999, "{face}");
+            assert!(facet.z > 0.0 && facet.dot(smooth) > least, "{face}");
         }
     }
 

@@ -162,16 +162,16 @@ impl Paraboloid {
         let b = o.x * d.x + o.y * d.y - 2.0 * f * d.z;
         let at = |t: f64| {
             let (x, y) = (o.x + t * d.x, o.y + t * d.y);
+            // Half the rate at which x^2 + y^2 - 4 f z, negative on the focus side, grows.
             let slope = a * t + b;
             let gradient = (x * x + y * y + 4.0 * f * f).sqrt();
             let bound = error * (gradient / slope.abs()).min(1.0 / f64::EPSILON);
             let inside = x * x + y * y <= self.radius * self.radius && t.is_finite();
-            inside.then_some(Root { t: t + shift, bound, front: slope < 0.0 })
+            inside.then_some(Root { t: t + shift, bound, front: slope > 0.0 })
         };
         if on {
             let other = (a > 0.0).then(|| at(-2.0 * b / a)).flatten();
-            // d . normal at the other end has the sign of b.
-            return [other.map(|r| Root { front: b < 0.0, ..r }), None];
+            return [other, None];
         }
         let c = o.x * o.x + o.y * o.y - 4.0 * f * o.z;
         let discriminant = exact_difference(b, b, a, c);
