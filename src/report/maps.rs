@@ -15,7 +15,7 @@ use crate::scene::receiver::{Cells, Receiver};
 
 use super::attributes::attributes;
 use super::statistics::ReceiverStatistics;
-use super::text::digits;
+use super::text::{grouped, rounded, with_error};
 
 /// Writes the files of one receiver into a directory that exists; their names.
 ///
@@ -89,13 +89,10 @@ fn picture<'a>(
     [width, height]: [usize; 2],
 ) -> FalseColour<'a> {
     let error = match s.expected_nrms {
-        Some(nrms) => format!("cell error {} % of the mean (rms)", digits(100.0 * nrms)),
+        Some(nrms) => format!("cell error {} % of the mean (rms)", rounded(100.0 * nrms, 3)),
         None => "no standard error (one replicate)".to_string(),
     };
-    let flux = match s.flux_lm.standard_error {
-        Some(e) => format!("flux {} +- {} lm", digits(s.flux_lm.value), digits(e)),
-        None => format!("flux {} lm", digits(s.flux_lm.value)),
-    };
+    let flux = format!("flux {}", with_error(s.flux_lm.value, s.flux_lm.standard_error, "lm"));
     FalseColour {
         title: &receiver.name,
         width,
@@ -104,7 +101,7 @@ fn picture<'a>(
         size_m: receiver.size_m,
         scale: Scale::Auto,
         isolux: true,
-        footer: vec![flux, format!("{} photons, {error}", super::text::grouped(outcome.photons))],
+        footer: vec![flux, format!("{} photons, {error}", grouped(outcome.photons))],
     }
 }
 

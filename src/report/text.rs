@@ -114,7 +114,7 @@ fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> std::fmt:
     writeln!(out, "  {:<width$} {:>12} lm", "emitted", digits(emitted))?;
     let mut line = |label: String, e: crate::run::Estimate| {
         let share = 100.0 * e.value / emitted;
-        let error = e.standard_error.map_or(String::new(), |se| format!(" +- {}", digits(se)));
+        let error = e.standard_error.map_or(String::new(), |se| format!(" +- {}", rounded(se, 2)));
         writeln!(out, "  {label:<width$} {:>12} lm{error}  ({share:.2} %)", digits(e.value))
     };
     for (i, surface) in surfaces.iter().enumerate() {
@@ -135,12 +135,12 @@ fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> std::fmt:
 }
 
 /// A number with its error, rounded to two digits of the error.
-fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
+pub fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
     match error {
         Some(e) if e > 0.0 && value != 0.0 => {
             // Decimals so that two digits of the error show.
             let decimals = (1.0 - libm::floor(libm::log10(e))).clamp(0.0, 12.0) as usize;
-            format!("{value:.decimals$} +- {e:.decimals$} {unit} ({} %)", digits(100.0 * e / value.abs()))
+            format!("{value:.decimals$} +- {e:.decimals$} {unit} ({} %)", rounded(100.0 * e / value.abs(), 2))
         }
         Some(_) => format!("{} +- 0 {unit}", digits(value)),
         None => format!("{} {unit}", digits(value)),
@@ -149,14 +149,19 @@ fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
 
 /// Five significant digits without exponents where a person would write none.
 pub fn digits(value: f64) -> String {
+    rounded(value, 5)
+}
+
+/// So many significant digits, without exponents where a person would write none.
+pub fn rounded(value: f64, significant: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
     let magnitude = libm::floor(libm::log10(value.abs()));
-    if !(-4.0..9.0).contains(&magnitude) {
-        return format!("{value:.4e}");
+    if !(-5.0..9.0).contains(&magnitude) {
+        return format!("{value:.*e}", significant.saturating_sub(1));
     }
-    let decimals = (4.0 - magnitude).clamp(0.0, 9.0) as usize;
+    let decimals = (significant as f64 - 1.0 - magnitude).clamp(0.0, 12.0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
@@ -187,7 +192,9 @@ mod tests {
         assert_eq!(digits(0.012_345_6), "0.012346");
         assert_eq!(digits(1e-9), "1.0000e-9");
         assert_eq!(digits(4.0), "4");
-        assert_eq!(with_error(123.456, Some(0.0123), "lm"), "123.456 +- 0.012 lm (0.0099631 %)");
+        assert_eq!(rounded(0.008_836_9, 2), "0.0088");
+        assert_eq!(rounded(18.733, 3), "18.7");
+        assert_eq!(with_error(123.456, Some(0.0123), "lm"), "123.456 +- 0.012 lm (0.01 %)");
         assert_eq!(with_error(5.0, None, "lx"), "5 lx");
     }
 }
