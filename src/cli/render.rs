@@ -18,6 +18,9 @@ use crate::sequence::Sequence;
 
 use super::{RenderArgs, count, exit, fail, not_available, print, say, warn};
 
+/// Most threads that can be asked for; starting more takes longer than tracing.
+const MAX_THREADS: usize = 1024;
+
 /// Set by the first Ctrl-C; the second ends the process at once.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -131,6 +134,10 @@ fn say_rounding(args: &RenderArgs, plan: &Plan) {
 }
 
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Outcome> {
+    if args.threads.is_some_and(|t| t == 0 || t > MAX_THREADS) {
+        let found = format!("--threads {}", args.threads.unwrap_or(0));
+        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_THREADS} threads")));
+    }
     let threads = args.threads.unwrap_or(0);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| {
         Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started")
