@@ -3,6 +3,8 @@
 
 mod geometry_support;
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use caustix::geometry::{
     Geometry, Mesh, MeshParts, Shape, Side, Smoothing, SurfaceId, Whereabouts, box_mesh,
 };
@@ -87,13 +89,15 @@ fn run(
     seed: u64,
     ray: impl Fn(&mut Random, &Target) -> (DVec3, DVec3, bool) + Sync,
 ) -> Tally {
+    // A few failures are enough to look at.
+    let shown = AtomicU32::new(0);
     (0..n)
         .into_par_iter()
         .map(|i| {
             let mut r = Random::new(seed, i);
             let (origin, direction, inside) = ray(&mut r, target);
             let tally = walk(&target.geometry, origin, direction, inside);
-            if tally.leaks + tally.doubles + tally.endless > 0 && i % 101 == 0 {
+            if tally.leaks + tally.doubles + tally.endless > 0 && shown.fetch_add(1, Ordering::Relaxed) < 5 {
                 println!("ray {i} of seed {seed}: {origin:?} {direction:?} inside {inside}: {tally:?}");
             }
             tally

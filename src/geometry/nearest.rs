@@ -19,6 +19,7 @@ struct Best {
     crossing: Crossing,
     /// The triangle, kept from the leaf: fetching it again from the mesh would miss the cache.
     corners: [[f64; 3]; 3],
+    view: View,
 }
 
 /// Distances of skipped candidates, kept until it is known which of them lie before the hit.
@@ -94,7 +95,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
     fn consider(
         &mut self,
         (primitive, surface): (u32, u32),
-        corners: &[[f64; 3]; 3],
+        (corners, view): (&[[f64; 3]; 3], &View),
         crossing: Crossing,
         bound: impl FnOnce() -> f64,
     ) {
@@ -123,7 +124,15 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             None => true,
         };
         if first {
-            self.best = Some(Best { t, rank: info.rank, primitive, surface, crossing, corners: *corners });
+            self.best = Some(Best {
+                t,
+                rank: info.rank,
+                primitive,
+                surface,
+                crossing,
+                corners: *corners,
+                view: *view,
+            });
             self.nearest_t = t;
             self.limit = self.boxes.limit(t);
         }
@@ -143,7 +152,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             return;
         }
         let ray = self.ray;
-        self.consider((primitive, surface), &corners, crossing, || {
+        self.consider((primitive, surface), (&corners, &view), crossing, || {
             view.bound(ray, coordinate_error(&corners, ray))
         });
     }
@@ -156,7 +165,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             return;
         }
         let ray = self.ray;
-        self.consider((primitive, surface), corners, crossing, || view.bound(ray, error));
+        self.consider((primitive, surface), (corners, view), crossing, || view.bound(ray, error));
     }
 
     #[inline(never)]
@@ -171,7 +180,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
         };
         for root in roots.into_iter().flatten() {
             let crossing = Crossing { t: root.t, weights: [0.0; 2], front: root.front };
-            self.consider((primitive, surface), &[[0.0; 3]; 3], crossing, || root.bound);
+            self.consider((primitive, surface), (&[[0.0; 3]; 3], &View::NONE), crossing, || root.bound);
         }
     }
 
@@ -347,7 +356,7 @@ impl Geometry {
             let [a, b, c] = best.corners.map(DVec3::from_array);
             let (ab, ac) = (b - a, c - a);
             let normal = ab.cross(ac).try_normalize().unwrap_or(facing);
-            let bound = View::new(&best.corners, ray).bound(ray, coordinate_error(&best.corners, ray));
+            let bound = best.view.bound(ray, coordinate_error(&best.corners, ray));
             (a + ab * v + ac * w, normal, bound)
         };
         let along = ray.origin + ray.direction * best.t;

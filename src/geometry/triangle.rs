@@ -91,6 +91,7 @@ pub(crate) struct Crossing {
 }
 
 /// A triangle in the ray's frame.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
     corners: [Sheared; 3],
     /// Edge functions opposite the corners, of exact sign.
@@ -98,6 +99,9 @@ pub(crate) struct View {
 }
 
 impl View {
+    /// A view for what is no triangle.
+    pub const NONE: Self = Self { corners: [Sheared { x: 0.0, y: 0.0, z: 0.0 }; 3], edge: [0.0; 3] };
+
     /// The triangle as the ray sees it.
     #[inline(always)]
     pub fn new(triangle: &[[f64; 3]; 3], ray: &Ray) -> Self {
@@ -122,9 +126,9 @@ impl View {
         // Cancellation in the edge functions of a sliver would put the point beside the line; take them exactly then.
         let size = self.extent();
         if sum.abs() < size * size * (1.0 / 1_048_576.0) {
-            return self.interpolate(self.refined());
+            return Some(self.clamped(self.refined()));
         }
-        self.interpolate(self.edge)
+        Some(self.interpolate(self.edge))
     }
 
     /// The crossing if the line meets the triangle or misses it by no more than rounding; weights are clamped.
@@ -136,7 +140,7 @@ impl View {
         if sum == 0.0 || edge.iter().any(|e| e * towards < -error) {
             return None;
         }
-        self.interpolate(edge.map(|e| if e * towards < 0.0 { 0.0 } else { e }))
+        Some(self.clamped(edge.map(|e| if e * towards < 0.0 { 0.0 } else { e })))
     }
 
     fn refined(&self) -> [f64; 3] {
@@ -149,18 +153,26 @@ impl View {
     }
 
     #[inline(always)]
-    fn interpolate(&self, [u, v, w]: [f64; 3]) -> Option<Crossing> {
+    fn interpolate(&self, [u, v, w]: [f64; 3]) -> Crossing {
         let [a, b, c] = &self.corners;
         let sum = u + v + w;
         let t = (u * a.z + v * b.z + w * c.z) / sum;
-        let t = t.max(a.z.min(b.z).min(c.z)).min(a.z.max(b.z).max(c.z));
-        Some(Crossing { t, weights: [v / sum, w / sum], front: sum > 0.0 })
+        Crossing { t, weights: [v / sum, w / sum], front: sum > 0.0 }
+    }
+
+    /// The same for a sliver, whose point rounding must not carry beyond its corners.
+    #[cold]
+    fn clamped(&self, edge: [f64; 3]) -> Crossing {
+        let [a, b, c] = &self.corners;
+        let crossing = self.interpolate(edge);
+        let t = crossing.t.max(a.z.min(b.z).min(c.z)).min(a.z.max(b.z).max(c.z));
+        Crossing { t, ..crossing }
     }
 
     /// Largest coordinate across the ray.
     #[inline(always)]
     fn extent(&self) -> f64 {
-        self.corners.iter().fold(0.0, |m: f64, s| m.max(s.x.abs()).max(s.y.abs()))
+        self.corners.iter().fold(0.0, |m, s| larger(larger(s.x.abs(), s.y.abs()), m))
     }
 
     /// Bound of the error of an edge function whose coordinates are each wrong by at most `coordinate_error`.
@@ -171,18 +183,24 @@ impl View {
     /// Bound of the error of `t`: the weights' errors times the spread of the corners, and the corners' own.
     pub fn bound(&self, ray: &Ray, coordinate_error: f64) -> f64 {
         let [a, b, c] = &self.corners;
-        let spread = a.z.max(b.z).max(c.z) - a.z.min(b.z).min(c.z);
+        let spread = larger(larger((a.z - b.z).abs(), (b.z - c.z).abs()), (c.z - a.z).abs());
         let sum = (self.edge[0] + self.edge[1] + self.edge[2]).abs();
         let weights = 3.0 * self.edge_error(coordinate_error) / sum;
         weights.min(1.0) * spread + 2.0 * coordinate_error * ray.sz.abs()
     }
 }
 
+/// The larger number: one instruction, where `f64::max` with its care for NaN takes four.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// Bound of the rounding error [m] of a sheared coordinate of this triangle.
 #[inline(always)]
 pub(crate) fn coordinate_error(triangle: &[[f64; 3]; 3], ray: &Ray) -> f64 {
     let numbers = triangle.iter().flatten().chain(&ray.o);
-    let size = numbers.fold(0.0f64, |m, x| m.max(x.abs()));
+    let size = numbers.fold(0.0, |m, x| larger(x.abs(), m));
     // |v - o| is at most twice the largest coordinate.
     GAMMA * 3.0 * size
 }

@@ -251,27 +251,33 @@ pub(crate) trait Visitor {
 /// Entry distances of the eight boxes and a bit for each that the ray may touch.
 #[inline(always)]
 fn test(node: &WideNode, ray: &BoxRay, limit: f32) -> ([f32; WIDTH], u32) {
+    let pick = |k: usize| {
+        let (lo, hi) = (&node.lo[k], &node.hi[k]);
+        if ray.negative[k] { (hi, lo) } else { (lo, hi) }
+    };
+    let [(ax, bx), (ay, by), (az, bz)] = [pick(0), pick(1), pick(2)];
+    let ([nx, ny, nz], [ix, iy, iz]) = (ray.near_origin, ray.near_inverse);
+    let ([fx, fy, fz], [jx, jy, jz]) = (ray.far_origin, ray.far_inverse);
+    // A NaN (zero times infinity, in a face of the slab) compares false and bounds nothing.
+    let larger = |a: f32, b: f32| if a > b { a } else { b };
+    let smaller = |a: f32, b: f32| if a < b { a } else { b };
     let mut near = [0.0f32; WIDTH];
-    let mut far = [limit; WIDTH];
-    for k in 0..3 {
-        let (first, last) =
-            if ray.negative[k] { (&node.hi[k], &node.lo[k]) } else { (&node.lo[k], &node.hi[k]) };
-        let (no, ni) = (ray.near_origin[k], ray.near_inverse[k]);
-        let (fo, fi) = (ray.far_origin[k], ray.far_inverse[k]);
-        for i in 0..WIDTH {
-            // A NaN (zero times infinity, in a face of the slab) compares false and bounds nothing.
-            let n = (first[i] - no) * ni;
-            near[i] = if n > near[i] { n } else { near[i] };
-            let f = (last[i] - fo) * fi;
-            far[i] = if f < far[i] { f } else { far[i] };
-        }
-    }
-    let mut mask = 0;
+    let mut hit = [0u32; WIDTH];
     for i in 0..WIDTH {
-        mask |= u32::from(near[i] <= far[i]) << i;
+        let n = larger((ax[i] - nx) * ix, 0.0);
+        let n = larger((ay[i] - ny) * iy, n);
+        let n = larger((az[i] - nz) * iz, n);
+        let f = smaller((bx[i] - fx) * jx, limit);
+        let f = smaller((by[i] - fy) * jy, f);
+        let f = smaller((bz[i] - fz) * jz, f);
+        near[i] = n;
+        hit[i] = if n <= f { BIT[i] } else { 0 };
     }
-    (near, mask)
+    (near, hit.iter().fold(0, |mask, bit| mask | bit))
 }
+
+/// One bit for each child.
+const BIT: [u32; WIDTH] = [1, 2, 4, 8, 16, 32, 64, 128];
 
 /// Up to eight descendants that together cover a node: the largest inner one is opened until there are eight.
 fn widen(binary: &BinaryTree, root: u32) -> Vec<u32> {
