@@ -204,3 +204,38 @@ pub(crate) fn coordinate_error(triangle: &[[f64; 3]; 3], ray: &Ray) -> f64 {
     // |v - o| is at most twice the largest coordinate.
     GAMMA * 3.0 * size
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    /// Numbers in [-1, 1) without pattern.
+    fn number(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    #[test]
+    fn a_line_through_a_closed_fan_meets_it_whatever_rounding_does() {
+        let mut s = 1;
+        let mut point = |scale: f64| DVec3::new(number(&mut s), number(&mut s), number(&mut s)) * scale;
+        for i in 0..300_000 {
+            // Eight triangles about a vertex; the line passes the vertex or a spoke, give or take rounding.
+            let rim: Vec<DVec3> = (0..8)
+                .map(|k| {
+                    let (sin, cos) = (f64::from(k) * 0.785).sin_cos();
+                    DVec3::new(cos, sin, 0.0) + point(0.1)
+                })
+                .collect();
+            let hub = point(0.05);
+            let aim = if i % 2 == 0 { hub } else { hub + (rim[i % 8] - hub) * (0.9 * point(0.5).x.abs()) };
+            let direction = (point(0.5) - DVec3::Z).normalize();
+            let ray = Ray::new(aim - direction * 3.0, direction).unwrap();
+            let fan = (0..8).map(|k| [hub, rim[k], rim[(k + 1) % 8]].map(|v| v.to_array()));
+            let hits = fan.filter_map(|t| View::new(&t, &ray).crossing()).count();
+            assert!(hits >= 1, "{i}");
+        }
+    }
+}
