@@ -112,6 +112,6 @@ impl Photometric {
         let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
         let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
         let point = self.grid.place(cell, u_theta, u_phi);
-        Emission { origin: self.position, direction: (self.axes * point.direction).normalize() }
+        Emission { origin: self.position, direction: self.axes * point.direction }
     }
 }

@@ -209,12 +209,18 @@ impl WideTree {
                 let node = &self.nodes[current as usize];
                 let (near, mut mask) = test(node, ray, visitor.limit());
                 if mask != 0 {
+                    let i = mask.trailing_zeros() as usize & (WIDTH - 1);
+                    let mut nearest = (near[i], node.child[i]);
+                    mask &= mask - 1;
                     let base = top;
                     while mask != 0 {
                         let i = mask.trailing_zeros() as usize & (WIDTH - 1);
                         mask &= mask - 1;
-                        let entry = (near[i], node.child[i]);
-                        // Insertion from the far end: the nearest comes to lie on top.
+                        let mut entry = (near[i], node.child[i]);
+                        if entry.0 < nearest.0 {
+                            std::mem::swap(&mut entry, &mut nearest);
+                        }
+                        // Insertion from the far end: the nearest of those that wait comes to lie on top.
                         let mut j = top;
                         while j > base && stack[j - 1].0 < entry.0 {
                             stack[j] = stack[j - 1];
@@ -223,6 +229,9 @@ impl WideTree {
                         stack[j] = entry;
                         top += 1;
                     }
+                    // The nearest never goes through the stack: most nodes have one or two children that are touched.
+                    current = nearest.1;
+                    continue;
                 }
             }
             let limit = visitor.limit();

@@ -16,8 +16,8 @@ const SECANT_EVALUATIONS: u32 = 12;
 
 /// Root of an increasing function on [low, high] by the secant method, kept inside a shrinking bracket.
 ///
-/// `f` returns its value and a by-product. `start` and `slope` (an estimate of f' there; any sign, zero or NaN is
-/// harmless) give the first two points. A secant step that leaves the bracket is replaced by bisection, so at most
+/// `f` returns its value and a by-product. `start` and `inverse_slope` (an estimate of 1 / f' there; any
+/// sign, zero or NaN is harmless) give the first two points. A secant step that leaves the bracket is replaced by bisection, so at most
 /// about `SECANT_EVALUATIONS` + 64 evaluations are used; the answer always lies in [low, high]. The function is taken
 /// to be negative at `low` and positive at `high`; neither is evaluated.
 #[inline]
@@ -25,7 +25,7 @@ pub fn bracketed_secant<T>(
     mut low: f64,
     mut high: f64,
     start: f64,
-    slope: f64,
+    mut inverse_slope: f64,
     tolerance: f64,
     mut f: impl FnMut(f64) -> (f64, T),
 ) -> Root<T> {
@@ -33,7 +33,6 @@ pub fn bracketed_secant<T>(
     let mut x = if inside(start, low, high) { start } else { low + 0.5 * (high - low) };
     let (mut fx, mut by_product) = f(x);
     let mut evaluations = 1;
-    let mut inverse_slope = 1.0 / slope;
     while fx.abs() > tolerance {
         if fx > 0.0 {
             high = x;
@@ -59,8 +58,8 @@ pub fn bracketed_secant<T>(
 mod tests {
     use super::*;
 
-    fn root(low: f64, high: f64, start: f64, slope: f64, f: impl Fn(f64) -> f64) -> Root<()> {
-        bracketed_secant(low, high, start, slope, 1e-15, |x| (f(x), ()))
+    fn root(low: f64, high: f64, start: f64, inverse_slope: f64, f: impl Fn(f64) -> f64) -> Root<()> {
+        bracketed_secant(low, high, start, inverse_slope, 1e-15, |x| (f(x), ()))
     }
 
     #[test]

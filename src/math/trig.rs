@@ -5,6 +5,9 @@
 
 /// Largest argument of the polynomials.
 const SMALL: f64 = 0.5;
+/// Largest argument for which five terms do: the next one, z^5 / 11!, is below 2^-64. Wider than a cell of 2.5
+/// degrees.
+const TINY: f64 = 1.0 / 16.0;
 
 /// sin s, 1 - cos s, and the two first-moment integrals of the cell equation, for s >= 0.
 #[derive(Debug, Clone, Copy, Default)]
@@ -23,19 +26,27 @@ impl InCell {
     /// All four at s >= 0, each to a few units in the last place however small s is.
     #[inline]
     pub fn at(s: f64) -> Self {
-        if s <= SMALL {
-            let z = s * s;
-            Self {
-                sin: s * sin_over_s(z),
-                versine: z * versine_over_z(z),
-                moment_cos: z * moment_cos_over_z(z),
-                moment_sin: s * z * moment_sin_over_s3(z),
-            }
+        if s <= TINY {
+            Self::series::<5>(s)
+        } else if s <= SMALL {
+            Self::series::<8>(s)
         } else {
             let (half_sin, half_cos) = libm::sincos(0.5 * s);
             let sin = 2.0 * half_sin * half_cos;
             let versine = 2.0 * half_sin * half_sin;
             Self { sin, versine, moment_cos: s * sin - versine, moment_sin: sin - s * (1.0 - versine) }
+        }
+    }
+
+    /// The Taylor series to `N` terms.
+    #[inline(always)]
+    fn series<const N: usize>(s: f64) -> Self {
+        let z = s * s;
+        Self {
+            sin: s * horner::<N>(&SIN_OVER_S, z),
+            versine: z * horner::<N>(&VERSINE_OVER_Z, z),
+            moment_cos: z * horner::<N>(&MOMENT_COS_OVER_Z, z),
+            moment_sin: s * z * horner::<N>(&MOMENT_SIN_OVER_S3, z),
         }
     }
 }
@@ -45,7 +56,7 @@ impl InCell {
 pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= SMALL {
         let z = x * x;
-        (x * sin_over_s(z), 1.0 - z * versine_over_z(z))
+        (x * horner::<8>(&SIN_OVER_S, z), 1.0 - z * horner::<8>(&VERSINE_OVER_Z, z))
     } else {
         libm::sincos(x)
     }
@@ -53,69 +64,54 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 
 // Coefficients: the Taylor series about 0, in z = s^2 <= 1/4, cut where the next term is below 2^-55 of the first.
 
-#[inline]
-fn sin_over_s(z: f64) -> f64 {
-    const C: [f64; 8] = [
-        1.0,
-        -1.0 / 6.0,
-        1.0 / 120.0,
-        -1.0 / 5_040.0,
-        1.0 / 362_880.0,
-        -1.0 / 39_916_800.0,
-        1.0 / 6_227_020_800.0,
-        -1.0 / 1_307_674_368_000.0,
-    ];
-    horner(&C, z)
-}
+const SIN_OVER_S: [f64; 8] = [
+    1.0,
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5_040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 1_307_674_368_000.0,
+];
 
-#[inline]
-fn versine_over_z(z: f64) -> f64 {
-    const C: [f64; 8] = [
-        1.0 / 2.0,
-        -1.0 / 24.0,
-        1.0 / 720.0,
-        -1.0 / 40_320.0,
-        1.0 / 3_628_800.0,
-        -1.0 / 479_001_600.0,
-        1.0 / 87_178_291_200.0,
-        -1.0 / 20_922_789_888_000.0,
-    ];
-    horner(&C, z)
-}
+const VERSINE_OVER_Z: [f64; 8] = [
+    1.0 / 2.0,
+    -1.0 / 24.0,
+    1.0 / 720.0,
+    -1.0 / 40_320.0,
+    1.0 / 3_628_800.0,
+    -1.0 / 479_001_600.0,
+    1.0 / 87_178_291_200.0,
+    -1.0 / 20_922_789_888_000.0,
+];
 
-#[inline]
-fn moment_cos_over_z(z: f64) -> f64 {
-    const C: [f64; 8] = [
-        1.0 / 2.0,
-        -3.0 / 24.0,
-        5.0 / 720.0,
-        -7.0 / 40_320.0,
-        9.0 / 3_628_800.0,
-        -11.0 / 479_001_600.0,
-        13.0 / 87_178_291_200.0,
-        -15.0 / 20_922_789_888_000.0,
-    ];
-    horner(&C, z)
-}
+const MOMENT_COS_OVER_Z: [f64; 8] = [
+    1.0 / 2.0,
+    -3.0 / 24.0,
+    5.0 / 720.0,
+    -7.0 / 40_320.0,
+    9.0 / 3_628_800.0,
+    -11.0 / 479_001_600.0,
+    13.0 / 87_178_291_200.0,
+    -15.0 / 20_922_789_888_000.0,
+];
 
-#[inline]
-fn moment_sin_over_s3(z: f64) -> f64 {
-    const C: [f64; 8] = [
-        2.0 / 6.0,
-        -4.0 / 120.0,
-        6.0 / 5_040.0,
-        -8.0 / 362_880.0,
-        10.0 / 39_916_800.0,
-        -12.0 / 6_227_020_800.0,
-        14.0 / 1_307_674_368_000.0,
-        -16.0 / 355_687_428_096_000.0,
-    ];
-    horner(&C, z)
-}
+const MOMENT_SIN_OVER_S3: [f64; 8] = [
+    2.0 / 6.0,
+    -4.0 / 120.0,
+    6.0 / 5_040.0,
+    -8.0 / 362_880.0,
+    10.0 / 39_916_800.0,
+    -12.0 / 6_227_020_800.0,
+    14.0 / 1_307_674_368_000.0,
+    -16.0 / 355_687_428_096_000.0,
+];
 
-#[inline]
-fn horner(coefficients: &[f64; 8], z: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * z + c)
+/// The first `N` terms of a series in z.
+#[inline(always)]
+fn horner<const N: usize>(coefficients: &[f64; 8], z: f64) -> f64 {
+    coefficients[..N].iter().rev().fold(0.0, |sum, c| sum * z + c)
 }
 
 #[cfg(test)]
