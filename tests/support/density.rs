@@ -94,6 +94,16 @@ impl<'w> Density<'w> {
         self.masses(&ends(&self.p_breaks), &ends(&self.q_breaks))[0]
     }
 
+    /// Integral of intensity times a function of (polar angle, azimuth) over solid angle.
+    pub fn moment(&self, f: impl Fn(f64, f64) -> f64) -> f64 {
+        let rule = Gauss::new(8);
+        let steradian = 1f64.to_radians().powi(2);
+        steradian
+            * rule.over_panels(&self.p_breaks, |p| {
+                self.weight(p) * rule.over_panels(&self.q_breaks, |q| self.intensity_cd(p, q) * f(p, q))
+            })
+    }
+
     /// The distribution function of the polar angle.
     pub fn polar_cdf(&self) -> PolarCdf {
         const PARTS: usize = 8;
