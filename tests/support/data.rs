@@ -1,0 +1,39 @@
+//! Photometric files for tests: the project's own and, where CAUSTIX_TEST_DATA names a folder, real ones.
+
+use std::path::{Path, PathBuf};
+
+/// The photometric files of the project, in the order of their names.
+pub fn own_files() -> Vec<PathBuf> {
+    sorted_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("ies"))
+}
+
+/// The path of one of them.
+pub fn own_file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("ies").join(name)
+}
+
+/// The well-formed real files, as `ies/expected.json` of the data folder judges them, in the order of their names;
+/// `None`, with a line that says so, where CAUSTIX_TEST_DATA is not set.
+pub fn real_files() -> Option<Vec<PathBuf>> {
+    let Some(folder) = std::env::var_os("CAUSTIX_TEST_DATA") else {
+        println!("skipped: CAUSTIX_TEST_DATA is not set");
+        return None;
+    };
+    let folder = Path::new(&folder).join("ies");
+    let expected: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("expected.json")).unwrap()).unwrap();
+    let well_formed = |path: &PathBuf| {
+        let name = path.strip_prefix(&folder).unwrap().to_str().unwrap();
+        expected["files"][name]["verdict"].as_str().is_some_and(|v| v.starts_with("well formed"))
+    };
+    let folders = ["permissive", "copyleft", "no-licence"];
+    Some(folders.iter().flat_map(|f| sorted_files(&folder.join(f))).filter(well_formed).collect())
+}
+
+fn sorted_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let is_ies = |p: &PathBuf| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("ies"));
+    let mut files: Vec<PathBuf> = entries.filter(is_ies).collect();
+    files.sort();
+    files
+}
