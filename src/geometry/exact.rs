@@ -25,14 +25,27 @@ pub(crate) fn exact_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
     if q == 0 {
         return scale(p, p_exponent);
     }
-    // Mantissas are normalised to 53 bits, so products lie in [2^104, 2^106): beyond a shift of 20 the smaller one
-    // is below the last bit kept of the larger, and below it 106 + 20 + 1 bits fit an i128.
-    match p_exponent - q_exponent {
-        shift @ 0..=20 => scale((p << shift) - q, q_exponent),
-        shift @ -20..0 => scale(p - (q << -shift), p_exponent),
-        shift if shift > 0 => scale(p, p_exponent),
-        _ => scale(-q, q_exponent),
+    // Mantissas are normalised to 53 bits, so products lie in [2^104, 2^106): the larger may be shifted by 20 to fit an
+    // i128 with the difference. Beyond that the smaller one is shifted the other way.
+    let shift = p_exponent - q_exponent;
+    if shift >= 0 {
+        let room = shift.min(ROOM);
+        scale((p << room) - shifted_right(q, shift - room), p_exponent - room)
+    } else {
+        let room = (-shift).min(ROOM);
+        scale(shifted_right(p, -shift - room) - (q << room), q_exponent - room)
     }
+}
+
+/// Bits that a product of two mantissas leaves free in an `i128`, less one for a difference.
+const ROOM: i32 = 20;
+
+/// `m 2^-by`, rounded to odd where bits are lost: a difference of it, rounded once more to fewer bits, is rounded from
+/// the exact value.
+fn shifted_right(m: i128, by: i32) -> i128 {
+    let by = by.min(127);
+    let floor = m >> by;
+    floor | i128::from(m & ((1i128 << by).wrapping_sub(1)) != 0)
 }
 
 /// The product of two finite numbers as integer times power of two, exactly.
@@ -107,5 +120,21 @@ mod tests {
         assert!(signed_difference(1e-200, 1e-200, 1e-200, 2e-200) < 0.0);
         assert!(signed_difference(5e-324, 5e-324, 5e-324, -5e-324) > 0.0);
         assert!(signed_difference(1e-300, 1e-10, 1e-300, -1e-30) > 0.0);
+    }
+
+    #[test]
+    fn products_of_very_different_size_are_both_kept() {
+        // 9 - 2^-k needs k + 4 bits: exact up to k = 49, then rounded to even, to 9 from k = 51 on.
+        for k in 0..=1000 {
+            let small = libm::scalbn(1.0, -k);
+            let exact = 9.0 - small;
+            assert_eq!(exact_difference(3.0, 3.0, 1.0, small), exact, "k = {k}");
+            assert_eq!(exact_difference(1.0, small, 3.0, 3.0), -exact, "k = {k}");
+            assert_eq!(exact_difference(3.0, 3.0, -1.0, small), 9.0 + small, "k = {k}");
+        }
+        // A tie broken by the last bit of the small product, far below the 53 of the result.
+        let half = libm::scalbn(1.0, -53);
+        assert_eq!(exact_difference(1.0, 1.0, -half, 1.0), 1.0);
+        assert_eq!(exact_difference(1.0, 1.0, -half, 1.0 + f64::EPSILON), 1.0 + f64::EPSILON);
     }
 }
