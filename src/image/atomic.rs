@@ -28,7 +28,10 @@ pub fn write_atomically(
     })
 }
 
-fn write_and_rename(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+fn write_and_rename(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
     let (temporary, file) = create_beside(path)?;
     let mut writer = BufWriter::new(file);
     write(&mut writer)?;

@@ -51,8 +51,8 @@ fn srgb_to_linear(value: f64) -> f64 {
 /// 8-bit code of a linear value: the number of code boundaries at or below it.
 fn encode(linear: f32) -> u8 {
     static BOUNDARIES: OnceLock<[f32; 255]> = OnceLock::new();
-    let boundaries = BOUNDARIES
-        .get_or_init(|| std::array::from_fn(|i| srgb_to_linear((i as f64 + 0.5) / 255.0) as f32));
+    let boundaries =
+        BOUNDARIES.get_or_init(|| std::array::from_fn(|i| srgb_to_linear((i as f64 + 0.5) / 255.0) as f32));
     boundaries.partition_point(|&boundary| boundary <= linear) as u8
 }
 
@@ -276,14 +276,12 @@ impl Canvas {
         for pair in points.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let length = distance(from, to);
-            // Also refuses lengths that are not finite.
-            if !(length <= 1e6) {
+            if !length.is_finite() || length > 1e6 {
                 continue;
             }
             let runs = (length / RUN_PX).ceil().max(1.0);
-            let at = |i: f64| {
-                [from[0] + (to[0] - from[0]) * i / runs, from[1] + (to[1] - from[1]) * i / runs]
-            };
+            let at =
+                |i: f64| [from[0] + (to[0] - from[0]) * i / runs, from[1] + (to[1] - from[1]) * i / runs];
             for run in 0..runs as usize {
                 self.cover_segment(at(run as f64), at(run as f64 + 1.0), width_px);
             }
@@ -368,7 +366,7 @@ struct Footprint {
 impl Footprint {
     fn across(from: [f64; 2], to: [f64; 2]) -> Self {
         let length = distance(from, to);
-        if !(length > 0.0) {
+        if length == 0.0 {
             return Self { long: 1.0, short: 0.0 };
         }
         let (a, b) = (((to[0] - from[0]) / length).abs(), ((to[1] - from[1]) / length).abs());
@@ -422,9 +420,7 @@ fn distance_to_segment(p: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
 fn covered(a: f64, b: f64, low: usize, high: usize) -> Vec<(usize, f64)> {
     let first = (a.floor() as usize).max(low);
     let last = (b.ceil().max(0.0) as usize).min(high);
-    (first..last)
-        .map(|i| (i, (b.min(i as f64 + 1.0) - a.max(i as f64)).clamp(0.0, 1.0)))
-        .collect()
+    (first..last).map(|i| (i, (b.min(i as f64 + 1.0) - a.max(i as f64)).clamp(0.0, 1.0))).collect()
 }
 
 #[cfg(test)]

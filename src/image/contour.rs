@@ -192,7 +192,8 @@ mod tests {
         let ridge = level_lines(&[1.0, 0.0, 0.0, 1.0], 2, 2, 0.4);
         let mut pits = level_lines(&[1.0, 0.0, 0.0, 1.0], 2, 2, 0.6);
         assert_eq!((ridge.len(), pits.len()), (2, 2));
-        let near = |line: &LevelLine, corner: [f64; 2]| line.points.iter().all(|&p| distance(p, corner) < 0.7);
+        let near =
+            |line: &LevelLine, corner: [f64; 2]| line.points.iter().all(|&p| distance(p, corner) < 0.7);
         assert!(ridge.iter().any(|l| near(l, [1.5, 0.5])) && ridge.iter().any(|l| near(l, [0.5, 1.5])));
         pits.sort_by(|a, b| a.points[0][0].total_cmp(&b.points[0][0]));
         assert!(near(&pits[0], [0.5, 0.5]) && near(&pits[1], [1.5, 1.5]));

@@ -124,7 +124,8 @@ fn draw_chain(canvas: &mut Canvas, points: &[[f64; 2]], pen: &Pen) {
 fn write_shape(svg: &mut String, shape: &Shape) {
     match shape {
         Shape::Polyline { points, pen } => {
-            let list: Vec<String> = points.iter().map(|p| format!("{},{}", number(p[0]), number(p[1]))).collect();
+            let list: Vec<String> =
+                points.iter().map(|p| format!("{},{}", number(p[0]), number(p[1]))).collect();
             write!(svg, "<polyline points=\"{}\" {}/>", list.join(" "), stroke(pen)).ok();
         }
         Shape::Arc { centre: [x, y], radius, angles: [from, to], pen } => {
@@ -138,13 +139,15 @@ fn write_shape(svg: &mut String, shape: &Shape) {
                 let large = u8::from((to - from).abs() > std::f64::consts::PI);
                 let sweep = u8::from(to > from);
                 let (r, start, stop) = (number(*radius), end(*from), end(*to));
-                write!(svg, "<path d=\"M {start} A {r} {r} 0 {large} {sweep} {stop}\" {}/>", stroke(pen)).ok();
+                write!(svg, "<path d=\"M {start} A {r} {r} 0 {large} {sweep} {stop}\" {}/>", stroke(pen))
+                    .ok();
             }
         }
         Shape::Rect { area, colour } => {
             let [x, y, width, height] = area.map(number);
             let fill = hex(*colour);
-            write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>").ok();
+            write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
+                .ok();
         }
         Shape::Text { at, text, style } => {
             let anchor = match style.anchor {
@@ -168,9 +171,9 @@ fn write_shape(svg: &mut String, shape: &Shape) {
 }
 
 fn stroke(pen: &Pen) -> String {
-    let dash = pen.dash_px.map_or(String::new(), |[on, off]| {
-        format!(" stroke-dasharray=\"{} {}\"", number(on), number(off))
-    });
+    let dash = pen
+        .dash_px
+        .map_or(String::new(), |[on, off]| format!(" stroke-dasharray=\"{} {}\"", number(on), number(off)));
     format!(
         "fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"{dash}",
         hex(pen.colour),
@@ -228,7 +231,11 @@ mod tests {
                 Shape::Rect { area: [0.0, 0.0, 10.0, 10.0], colour: Colour::BLACK },
                 Shape::Polyline { points: vec![[5.0, 20.0], [55.0, 20.0]], pen },
                 Shape::Arc { centre: [30.0, 20.0], radius: 10.0, angles: [0.0, 3.0], pen },
-                Shape::Text { at: [30.0, 39.0], text: "x < y".into(), style: TextStyle::new(11.0, Colour::BLACK) },
+                Shape::Text {
+                    at: [30.0, 39.0],
+                    text: "x < y".into(),
+                    style: TextStyle::new(11.0, Colour::BLACK),
+                },
             ],
         };
         let svg = drawing.to_svg();

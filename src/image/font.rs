@@ -51,9 +51,9 @@ pub fn strokes(text: &str, size_px: f64, hinted: bool) -> Vec<PenStroke> {
         let (width, glyph_strokes) = lookup(c);
         for stroke in glyph_strokes {
             let (points, wider) = flatten(stroke);
-            let points = points.iter().map(|&(x, y)| {
-                [pen_x + fit_x(x, width, size_px, hinted), -fit_y(y, size_px, hinted)]
-            });
+            let points = points
+                .iter()
+                .map(|&(x, y)| [pen_x + fit_x(x, width, size_px, hinted), -fit_y(y, size_px, hinted)]);
             laid.push(PenStroke { points: points.collect(), width_px: pen_width_px(size_px) * wider });
         }
         pen_x += advance(c, size_px, hinted);
@@ -108,10 +108,9 @@ fn flatten(stroke: &Stroke) -> (Vec<(f64, f64)>, f64) {
 }
 
 fn lookup(c: char) -> (f64, &'static [Stroke]) {
-    glyph(c).or_else(|| glyph(plain_letter(c))).unwrap_or((
-        7.0,
-        &[L(&[(0.0, 0.0), (7.0, 0.0), (7.0, 14.0), (0.0, 14.0), (0.0, 0.0)])],
-    ))
+    glyph(c)
+        .or_else(|| glyph(plain_letter(c)))
+        .unwrap_or((7.0, &[L(&[(0.0, 0.0), (7.0, 0.0), (7.0, 14.0), (0.0, 14.0), (0.0, 0.0)])]))
 }
 
 /// The letter under the commonest accents, so that names in labels stay readable.

@@ -114,7 +114,8 @@ fn labelled(lines: Vec<Line>, display: [usize; 2]) -> Vec<IsoluxLine> {
     let even: Vec<Vec<[f64; 2]>> = lines.iter().map(|(_, points)| evenly(points)).collect();
     let mut taken: Vec<([f64; 2], f64)> = Vec::new();
     let mut labels = vec![None; lines.len()];
-    let mut order: Vec<usize> = (0..lines.len()).filter(|&i| length(&lines[i].1) >= SHORTEST_LABELLED_PX).collect();
+    let mut order: Vec<usize> =
+        (0..lines.len()).filter(|&i| length(&lines[i].1) >= SHORTEST_LABELLED_PX).collect();
     // Long lines choose first; the sort is stable.
     order.sort_by_key(|&i| std::cmp::Reverse(even[i].len()));
     for index in order {

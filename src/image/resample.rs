@@ -50,13 +50,14 @@ fn overlaps(i: usize, old: usize, new: usize) -> Vec<(usize, f64)> {
 /// The map convolved with a Gaussian of this standard deviation in cells, normalised over the cells that have a value
 /// (so borders neither darken nor pull); cells without one keep none.
 pub fn gaussian(values: &[f64], [width, height]: [usize; 2], sigma: f64) -> Vec<f64> {
-    if !(sigma > 0.0) {
+    if sigma.is_nan() || sigma <= 0.0 {
         return values.to_vec();
     }
     let reach = (3.0 * sigma).ceil() as usize;
     let kernel: Vec<f64> =
         (0..=reach).map(|k| libm::exp(-0.5 * (k as f64 / sigma) * (k as f64 / sigma))).collect();
-    let sums: Vec<[f64; 2]> = values.iter().map(|&v| if v.is_finite() { [v, 1.0] } else { [0.0; 2] }).collect();
+    let sums: Vec<[f64; 2]> =
+        values.iter().map(|&v| if v.is_finite() { [v, 1.0] } else { [0.0; 2] }).collect();
     let rows = convolve(&sums, width, 1, &kernel);
     let both = convolve(&rows, height, width, &kernel);
     let value = |(sum, old): (&[f64; 2], &f64)| if old.is_finite() { sum[0] / sum[1] } else { f64::NAN };
@@ -110,7 +111,8 @@ mod tests {
         let smooth = gaussian(&map, [101, 3], 4.0);
         let row = &smooth[101..202];
         let total: f64 = row.iter().sum();
-        let variance: f64 = row.iter().enumerate().map(|(i, v)| v * (i as f64 - 50.0).powi(2)).sum::<f64>() / total;
+        let variance: f64 =
+            row.iter().enumerate().map(|(i, v)| v * (i as f64 - 50.0).powi(2)).sum::<f64>() / total;
         // A Gaussian cut at three standard deviations has 0.9733 of its variance; a sample sum adds little.
         assert!((variance / 16.0 - 0.9733).abs() < 0.02, "{variance}");
         let flat = gaussian(&[2.0, 2.0, f64::NAN, 2.0], [2, 2], 1.3);

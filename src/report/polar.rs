@@ -96,7 +96,8 @@ impl PolarPlot {
     }
 
     fn frame(&self) -> Frame {
-        let finite = || self.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
+        let finite =
+            || self.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
         let max = finite().map(|p| p.1).fold(0.0, f64::max);
         let full = finite().any(|p| p.0.abs() > 90.0 && p.1 > 0.0);
         // Subnormal candela have no round numbers.
@@ -181,7 +182,10 @@ fn draw_grid(shapes: &mut Vec<Shape>, frame: &Frame) {
                 let end = frame.place(side * angle as f64, frame.outer_cd);
                 // Fine rays would fill the centre.
                 let start = if angle % 30 == 0 { 0.0 } else { 0.2 * frame.outer_cd };
-                shapes.push(Shape::Polyline { points: vec![frame.place(side * angle as f64, start), end], pen });
+                shapes.push(Shape::Polyline {
+                    points: vec![frame.place(side * angle as f64, start), end],
+                    pen,
+                });
                 shapes.push(angle_label([cx, cy], side, angle));
             }
         }
@@ -204,12 +208,18 @@ fn angle_label([cx, cy]: [f64; 2], side: f64, angle_deg: usize) -> Shape {
 fn draw_ring_labels(shapes: &mut Vec<Shape>, frame: &Frame) {
     let style = TextStyle::new(TICK_SIZE, Colour::grey(90)).anchored(Anchor::End);
     let baseline = frame.centre[1] - 5.0;
-    for (i, ring) in frame.rings.iter().enumerate() {
+    let mut free_until = f64::INFINITY;
+    for (i, ring) in frame.rings.iter().enumerate().rev() {
         let unit = if i + 1 == frame.rings.len() { " cd" } else { "" };
         let label = format!("{}{unit}", ring.label);
+        let width = font::width_px(&label, TICK_SIZE, true);
         let x = frame.centre[0] + ring.value / frame.outer_cd * RADIUS - 4.0;
+        // Long numbers on narrow rings: the outer one says more.
+        if x > free_until || x - width < frame.centre[0] {
+            continue;
+        }
+        free_until = x - width - 10.0;
         if frame.full {
-            let width = font::width_px(&label, TICK_SIZE, true);
             let area = [x - width - 1.0, baseline - 10.0, width + 2.0, 12.0];
             shapes.push(Shape::Rect { area, colour: Colour::WHITE });
         }
@@ -274,7 +284,8 @@ mod tests {
 
     #[test]
     fn a_lambertian_source_draws_a_circle() {
-        let plot = plot((-90..=90).map(|a| (f64::from(a), 500.0 * f64::from(a).to_radians().cos())).collect());
+        let plot =
+            plot((-90..=90).map(|a| (f64::from(a), 500.0 * f64::from(a).to_radians().cos())).collect());
         let frame = plot.frame();
         let middle = [frame.centre[0], frame.centre[1] + 0.5 * RADIUS];
         for p in first_curve(&plot) {
@@ -285,7 +296,14 @@ mod tests {
 
     #[test]
     fn rings_are_round_and_reach_the_maximum() {
-        for (max, top) in [(1000.0, 1000.0), (1001.0, 1200.0), (87.0, 100.0), (0.013, 0.014), (5.3e6, 6e6), (1401.0, 1500.0)] {
+        for (max, top) in [
+            (1000.0, 1000.0),
+            (1001.0, 1200.0),
+            (87.0, 100.0),
+            (0.013, 0.014),
+            (5.3e6, 6e6),
+            (1401.0, 1500.0),
+        ] {
             let frame = plot(vec![(0.0, max)]).frame();
             assert_eq!(frame.outer_cd, top, "for {max}");
             assert!((3..=8).contains(&frame.rings.len()), "{:?}", frame.rings);
