@@ -134,8 +134,8 @@ fn labels_keep_off_each_other_and_inside_the_map() {
     let labels: Vec<_> = found.lines.iter().filter_map(|l| l.label).collect();
     assert!(labels.len() > 10, "{}", labels.len());
     for (i, a) in labels.iter().enumerate() {
-        for side in 0..2 {
-            assert!(a.centre[side] > 12.0 && a.centre[side] < display[side] as f64 - 12.0);
+        for (centre, side) in a.centre.iter().zip(display) {
+            assert!(*centre > 12.0 && *centre < side as f64 - 12.0);
         }
         for b in &labels[..i] {
             let gap = ((a.centre[0] - b.centre[0]).powi(2) + (a.centre[1] - b.centre[1]).powi(2)).sqrt();
