@@ -1,7 +1,7 @@
 //! A small antialiased picture: f32 linear light, written as 8-bit sRGB.
 //!
 //! Coordinates are pixels, x right and y down, the centre of the top left pixel at (0.5, 0.5). Blending is done in
-//! linear light; coverage of a stroke is that of its width across the pixel, so thin lines keep their weight.
+//! linear light; coverage is the area of the pixel under the stroke, so thin lines keep their weight at any angle.
 
 use std::io::{self, BufWriter};
 use std::path::Path;
@@ -276,8 +276,7 @@ impl Canvas {
         for pair in points.windows(2) {
             let (from, to) = (pair[0], pair[1]);
             let length = distance(from, to);
-            // Also refuses lengths that are not finite.
-            if !(length <= 1e6) {
+            if !length.is_finite() || length > 1e6 {
                 continue;
             }
             let runs = (length / RUN_PX).ceil().max(1.0);
@@ -292,7 +291,8 @@ impl Canvas {
     /// Coverage of one round-ended segment: the largest so far wins, so joints are not inked twice.
     fn cover_segment(&mut self, from: [f64; 2], to: [f64; 2], width_px: f64) {
         let half = 0.5 * width_px;
-        let reach = half + 0.5;
+        let footprint = Footprint::across(from, to);
+        let reach = half + footprint.half_width();
         let range = |a: f64, b: f64, low: usize, high: usize| {
             // Casts saturate: whatever lies left of the picture becomes 0.
             let first = ((a.min(b) - reach).floor() as usize).max(low);
@@ -303,7 +303,7 @@ impl Canvas {
         for y in y0..y1 {
             for x in x0..x1 {
                 let d = distance_to_segment([x as f64 + 0.5, y as f64 + 0.5], from, to);
-                let cover = ((d + 0.5).min(half) - (d - 0.5).max(-half)).clamp(0.0, 1.0) as f32;
+                let cover = (footprint.below(d + half) - footprint.below(d - half)) as f32;
                 let index = y * self.width + x;
                 if cover > self.mask[index] {
                     if self.mask[index] == 0.0 {
@@ -353,6 +353,43 @@ pub fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
         pieces.push(piece);
     }
     pieces
+}
+
+/// A pixel square seen along a line: a trapezium, the convolution of the two sides' projections. Its integral gives the
+/// exact share of the pixel that a long straight stroke covers.
+struct Footprint {
+    /// Longer and shorter projection of a side on the line's normal.
+    long: f64,
+    short: f64,
+}
+
+impl Footprint {
+    fn across(from: [f64; 2], to: [f64; 2]) -> Self {
+        let length = distance(from, to);
+        if length == 0.0 {
+            return Self { long: 1.0, short: 0.0 };
+        }
+        let (a, b) = (((to[0] - from[0]) / length).abs(), ((to[1] - from[1]) / length).abs());
+        Self { long: a.max(b), short: a.min(b) }
+    }
+
+    fn half_width(&self) -> f64 {
+        0.5 * (self.long + self.short)
+    }
+
+    /// Share of the pixel on the near side of a line at this signed distance from its centre.
+    fn below(&self, distance: f64) -> f64 {
+        let t = distance.abs();
+        let share = if t <= 0.5 * (self.long - self.short) {
+            t / self.long
+        } else if t < self.half_width() {
+            let rest = self.half_width() - t;
+            0.5 - rest * rest / (2.0 * self.long * self.short)
+        } else {
+            0.5
+        };
+        if distance < 0.0 { 0.5 - share } else { 0.5 + share }
+    }
 }
 
 fn anchor_share(anchor: Anchor) -> f64 {

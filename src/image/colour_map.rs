@@ -54,7 +54,7 @@ pub fn lightness(t: f64) -> f64 {
 fn oklab(t: f64) -> [f64; 3] {
     let last = KNOTS.len() - 1;
     // NaN goes to the foot; callers that can tell use `no_value`.
-    let x = t.max(0.0).min(1.0) * last as f64;
+    let x = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) * last as f64 };
     let cell = (x as usize).min(last - 1);
     let f = x - cell as f64;
     let knots = [cell.saturating_sub(1), cell, cell + 1, (cell + 2).min(last)].map(|k| KNOTS[k]);

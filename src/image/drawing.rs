@@ -232,7 +232,7 @@ mod tests {
                 Shape::Polyline { points: vec![[5.0, 20.0], [55.0, 20.0]], pen },
                 Shape::Arc { centre: [30.0, 20.0], radius: 10.0, angles: [0.0, 3.0], pen },
                 Shape::Text {
-                    at: [30.0, 35.0],
+                    at: [30.0, 39.0],
                     text: "x < y".into(),
                     style: TextStyle::new(11.0, Colour::BLACK),
                 },

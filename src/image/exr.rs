@@ -149,7 +149,7 @@ fn check_channels(width: usize, height: usize, channels: &[Channel<'_>]) -> Resu
 fn check_attribute_name(name: &str) -> Result<()> {
     check_length("attribute", name)?;
     let reserved = ::exr::meta::header::standard_names::ALL;
-    if reserved.iter().any(|taken| *taken == name.as_bytes()) {
+    if reserved.contains(&name.as_bytes()) {
         return Err(bad_name("attribute", name, "a name that OpenEXR does not use itself"));
     }
     Ok(())

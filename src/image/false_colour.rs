@@ -80,6 +80,17 @@ impl FalseColour<'_> {
         self.render().write_png(path)
     }
 
+    /// Where the map and the colour scale lie in the picture: x, y, width, height in pixels of each.
+    pub fn areas(&self) -> [[usize; 4]; 2] {
+        let (values, cells) = match self.checked() {
+            Some(cells) => (self.illuminance_lx, cells),
+            None => (&[f64::NAN][..], [1, 1]),
+        };
+        let labels = bar_labels(&Axis::fit_map(values, cells, self.scale));
+        let layout = self.layout(display_size(cells, self.size_m), &labels);
+        [layout.map, layout.bar]
+    }
+
     fn checked(&self) -> Option<[usize; 2]> {
         let fits = self.width > 0
             && self.height > 0
@@ -88,7 +99,7 @@ impl FalseColour<'_> {
     }
 
     fn render_cells(&self, values: &[f64], cells: [usize; 2]) -> Canvas {
-        let axis = Axis::fit(values, self.scale);
+        let axis = Axis::fit_map(values, cells, self.scale);
         let display = display_size(cells, self.size_m);
         let lines = if self.isolux { isolux::isolux(values, cells, display, &axis) } else { no_lines() };
         let labels = bar_labels(&axis);
@@ -261,7 +272,7 @@ fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux
             let contrast = line_colour(axis.place(line.tick.value));
             for piece in &line.pieces {
                 let points: Vec<_> = piece.iter().map(shift).collect();
-                canvas.polyline(&points, 1.1, contrast, 0.9);
+                canvas.polyline(&points, 1.0, contrast, 0.9);
             }
         }
         for line in &isolux.lines {
@@ -288,15 +299,11 @@ fn line_colour(place: f64) -> Colour {
 fn bar_labels(axis: &Axis) -> Vec<(f64, String)> {
     let mut labels: Vec<(f64, String)> =
         axis.ticks.iter().map(|t| (axis.place(t.value), t.label.clone())).collect();
-    if axis.clipped_below {
-        if let Some(first) = labels.first_mut() {
-            first.1 = format!("< {}", first.1);
-        }
+    if let Some(first) = labels.first_mut().filter(|_| axis.clipped_below) {
+        first.1 = format!("< {}", first.1);
     }
-    if axis.clipped_above {
-        if let Some(last) = labels.last_mut() {
-            last.1 = format!("> {}", last.1);
-        }
+    if let Some(last) = labels.last_mut().filter(|_| axis.clipped_above) {
+        last.1 = format!("> {}", last.1);
     }
     labels
 }

@@ -50,7 +50,7 @@ fn overlaps(i: usize, old: usize, new: usize) -> Vec<(usize, f64)> {
 /// The map convolved with a Gaussian of this standard deviation in cells, normalised over the cells that have a value
 /// (so borders neither darken nor pull); cells without one keep none.
 pub fn gaussian(values: &[f64], [width, height]: [usize; 2], sigma: f64) -> Vec<f64> {
-    if !(sigma > 0.0) {
+    if sigma.is_nan() || sigma <= 0.0 {
         return values.to_vec();
     }
     let reach = (3.0 * sigma).ceil() as usize;

@@ -1,5 +1,7 @@
 //! Scales with round numbers: ticks at 1, 2, 5 times powers of ten, their labels, and the scale of a lux map.
 
+use super::resample::area_average;
+
 /// A mark of a scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
@@ -43,17 +45,34 @@ pub struct Axis {
 const AUTO_QUANTILE: f64 = 0.998;
 /// A linear scale whose top is this many medians leaves the map black.
 const AUTO_LOG_RATIO: f64 = 40.0;
+/// Cells along a side over which a typical value is taken.
+const TYPICAL_CELLS: usize = 128;
 /// Most that a logarithmic scale spans.
 const LOG_SPAN: f64 = 1e4;
 
 impl Axis {
     /// The scale for these values; NaN and infinities are ignored, negative values count as below the foot.
     pub fn fit(values: &[f64], scale: Scale) -> Self {
+        Self::fit_with_typical(values, scale, values)
+    }
+
+    /// The scale for a map of `cells`. Where photons are few, most cells hold none or one of them; what is typical is
+    /// therefore taken from averages over larger areas.
+    pub fn fit_map(values: &[f64], cells: [usize; 2], scale: Scale) -> Self {
+        let coarse = cells.map(|n| n.min(TYPICAL_CELLS));
+        if scale == Scale::Auto && coarse != cells {
+            Self::fit_with_typical(values, scale, &area_average(values, cells, coarse))
+        } else {
+            Self::fit(values, scale)
+        }
+    }
+
+    fn fit_with_typical(values: &[f64], scale: Scale, typical: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let max = sorted.last().copied().unwrap_or(0.0);
         // Nothing can be marked between zero and the smallest doubles.
-        if !(max > f64::MIN_POSITIVE / f64::EPSILON) {
+        if max <= f64::MIN_POSITIVE / f64::EPSILON {
             return Self::linear(1.0, &sorted);
         }
         match scale {
@@ -63,8 +82,10 @@ impl Axis {
                 let bulk = quantile(&sorted, AUTO_QUANTILE);
                 // A clipped scale must be worth its ">": it shows at least half as much again.
                 let top = if bulk > 0.0 && max > 1.5 * bulk { bulk } else { max };
-                let lit = &sorted[sorted.partition_point(|&v| v <= 0.0)..];
-                if top > AUTO_LOG_RATIO * quantile(lit, 0.5) {
+                let mut lit: Vec<f64> =
+                    typical.iter().copied().filter(|v| v.is_finite() && *v > 0.0).collect();
+                lit.sort_unstable_by(f64::total_cmp);
+                if top > AUTO_LOG_RATIO * quantile(&lit, 0.5) {
                     Self::log(max, &sorted)
                 } else {
                     Self::linear(top, &sorted)
@@ -294,6 +315,21 @@ mod tests {
         assert_eq!((axis.high, axis.clipped_above), (5000.0, false));
         let wide: Vec<f64> = (0..10_000).map(|i| 10f64.powf(i as f64 / 2500.0)).collect();
         assert!(Axis::fit(&wide, Scale::Auto).log);
+    }
+
+    #[test]
+    fn what_is_typical_does_not_depend_on_how_few_photons_a_cell_got() {
+        // One cell in 16 holds a photon worth 800 lx, a small spot holds 50 of them: 50 lx is typical, not 800.
+        let n = 512;
+        let mut values = vec![0.0; n * n];
+        for i in (0..n * n).filter(|i| i % n % 4 == 0 && i / n % 4 == 0) {
+            values[i] = 800.0;
+        }
+        for i in 0..n * 20 {
+            values[i / 40 * n + i % 40] = 40_000.0;
+        }
+        assert!(Axis::fit_map(&values, [n, n], Scale::Auto).log);
+        assert!(!Axis::fit_map(&vec![50.0; n * n], [n, n], Scale::Auto).log);
     }
 
     #[test]

@@ -208,12 +208,18 @@ fn angle_label([cx, cy]: [f64; 2], side: f64, angle_deg: usize) -> Shape {
 fn draw_ring_labels(shapes: &mut Vec<Shape>, frame: &Frame) {
     let style = TextStyle::new(TICK_SIZE, Colour::grey(90)).anchored(Anchor::End);
     let baseline = frame.centre[1] - 5.0;
-    for (i, ring) in frame.rings.iter().enumerate() {
+    let mut free_until = f64::INFINITY;
+    for (i, ring) in frame.rings.iter().enumerate().rev() {
         let unit = if i + 1 == frame.rings.len() { " cd" } else { "" };
         let label = format!("{}{unit}", ring.label);
+        let width = font::width_px(&label, TICK_SIZE, true);
         let x = frame.centre[0] + ring.value / frame.outer_cd * RADIUS - 4.0;
+        // Long numbers on narrow rings: the outer one says more.
+        if x > free_until || x - width < frame.centre[0] {
+            continue;
+        }
+        free_until = x - width - 10.0;
         if frame.full {
-            let width = font::width_px(&label, TICK_SIZE, true);
             let area = [x - width - 1.0, baseline - 10.0, width + 2.0, 12.0];
             shapes.push(Shape::Rect { area, colour: Colour::WHITE });
         }
