@@ -264,3 +264,62 @@ fn without_aim_and_up_a_lamp_hangs() {
     assert!((towards([-0.5, 0.0, -cos_30]) - 1424.289).abs() < 1e-6);
     assert!((towards([0.5, 0.0, -cos_30]) - 1173.787).abs() < 1e-6);
 }
+
+/// Cells of the rows of docs/PHOTOMETRIC_FRAME.md that begin with a file's name and have this many cells.
+fn rows_of_the_page(cells: usize) -> Vec<Vec<String>> {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/PHOTOMETRIC_FRAME.md");
+    let text = std::fs::read_to_string(page).unwrap();
+    let rows = text.lines().filter(|line| line.starts_with("| `"));
+    let split =
+        |line: &str| line.trim_matches('|').split('|').map(|c| c.trim().to_owned()).collect::<Vec<_>>();
+    rows.map(split).filter(|row| row.len() == cells).collect()
+}
+
+#[test]
+fn the_numbers_of_the_page_are_these() {
+    let numbers = |text: &str, separator: &str| -> Vec<f64> {
+        text.trim_matches(['(', ')']).split(separator).map(|n| n.trim().parse().unwrap()).collect()
+    };
+    let file = |cell: &str| format!("{}.ies", cell.trim_matches('`'));
+    let worked = rows_of_the_page(7);
+    assert_eq!(worked.len(), all_known().iter().map(|(.., known)| known.len()).sum::<usize>());
+    for row in &worked {
+        let name = file(&row[0]);
+        let (_, kind, known) = all_known().into_iter().find(|(n, ..)| *n == name).unwrap();
+        let (v, h): (f64, f64) = (row[2].parse().unwrap(), row[3].parse().unwrap());
+        let k = known.iter().find(|k| (k.v_deg, k.h_deg) == (v, h)).unwrap();
+        assert_eq!(row[1], kind.name());
+        // Six decimals of the direction; the intensity as a product of what the file says.
+        let direction = DVec3::from_slice(&numbers(&row[4], ","));
+        assert!((direction - k.direction).abs().max_element() < 6e-7, "{row:?}");
+        assert!((numbers(&row[6], " x ").iter().product::<f64>() - k.candela).abs() < 1e-9, "{row:?}");
+        // What it is made of: "0.5 u + 0.866 a".
+        if row[5] != "as above" {
+            let frame = Luminaire::new(AIM, UP);
+            let by_hand: DVec3 =
+                row[5].replace("- ", "+ -").split(" + ").map(|term| axis(&frame, term)).sum();
+            assert!((by_hand - k.direction).length() < 1e-3, "{row:?}: {by_hand}");
+        }
+    }
+    let leaning = rows_of_the_page(5);
+    assert_eq!(leaning.len(), all_known().len());
+    for row in &leaning {
+        let mean = mean_directions(&read(&file(&row[0])), 1).1;
+        for (stated, mean) in row[1..4].iter().zip(mean) {
+            assert!((stated.parse::<f64>().unwrap() - mean).abs() < 6e-5, "{row:?}: {mean}");
+        }
+    }
+}
+
+/// "-0.433 u" or "0.5 (u x a)" as a vector.
+fn axis(frame: &Luminaire, term: &str) -> DVec3 {
+    let (factor, name) = term.split_once(' ').unwrap();
+    let axis = match name {
+        "a" => frame.a,
+        "u" => frame.u,
+        "r" => frame.r,
+        "(u x a)" => -frame.r,
+        other => panic!("{other}"),
+    };
+    axis * factor.parse::<f64>().unwrap()
+}
