@@ -105,7 +105,7 @@ fn every_order_of_a_thin_beam_carries_its_term_of_the_series() {
         for closed in [true, false] {
             let scene = orders_scene(theta, closed);
             // Independent photons: binomial counts.
-            let n = 1u64 << 19;
+            let n = 1u64 << 18;
             let outcome = run(&scene, Sequence::Independent, n, 1, 3);
             for (count, p) in orders(&outcome, r) {
                 if n as f64 * p >= 10.0 {
@@ -149,7 +149,7 @@ fn a_pane_passes_and_sends_back_what_the_sums_say() {
                 + &rectangle("ceiling", "black", [-100.0, 1.0, CEILING], 200.0, -2.0);
             let scene = scene(&text);
             let surface = |name| scene.geometry.surface_named(name).unwrap().0 as usize;
-            let n = 1u64 << 19;
+            let n = 1u64 << 18;
             let outcome = run(&scene, Sequence::Independent, n, 1, 5);
             let transmitted = (1.0 - r) / (1.0 + r);
             for (name, p) in [("floor", transmitted), ("ceiling", 1.0 - transmitted)] {
@@ -214,7 +214,7 @@ fn a_point_lamp_through_a_pane_is_shifted_order_by_order() {
                 "[[receiver]]\nsurface = \"floor\"\ncells = [{cells}, {cells}]\n[[receiver]]\nsurface = \"ceiling\"\ncells = [{coarse}, {coarse}]\nevents = \"indirect\"\n"
             );
         let scene = scene(&text);
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 18, 16, 6);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 6);
         for (i, (name, exact)) in [("through", &through), ("back", &back)].into_iter().enumerate() {
             let label = format!("{name}, closed {closed}");
             assert_cells(&label, &scene, &outcome, i, exact);
