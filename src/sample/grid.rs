@@ -231,7 +231,11 @@ mod tests {
 
     fn lumpy(i: usize, j: usize) -> f64 {
         let j = j % 24;
-        if (i + 3 * j).is_multiple_of(5) || j == 7 { 0.0 } else { f64::from(((i * 31 + j * 17) % 23) as u32).powi(3) }
+        if (i + 3 * j).is_multiple_of(5) || j == 7 {
+            0.0
+        } else {
+            f64::from(((i * 31 + j * 17) % 23) as u32).powi(3)
+        }
     }
 
     #[test]

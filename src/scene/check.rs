@@ -22,12 +22,13 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
     let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
     if !matches!(emitter, Emitter::Collimated(_))
-        && let Some(surface) = geometry.surface_at(centre) {
-            return fail(
-                format!("emitter \"{name}\" on surface \"{}\"", label(surface)),
-                "an emitter off every surface: on one, it is on neither side",
-            );
-        }
+        && let Some(surface) = geometry.surface_at(centre)
+    {
+        return fail(
+            format!("emitter \"{name}\" on surface \"{}\"", label(surface)),
+            "an emitter off every surface: on one, it is on neither side",
+        );
+    }
     let behind = behind(geometry, centre);
     for &surface in &behind {
         if bsdfs[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {

@@ -90,10 +90,12 @@ impl Sink for ReceiverSink<'_, '_> {
                 ReceiverEvents::Direct => arrival.events == 0,
                 ReceiverEvents::Indirect => arrival.events > 0,
             };
-            if side && history
-                && let Some(cell) = all.cell(receiver, arrival.hit) {
-                    all.counts[i as usize].add(cell);
-                }
+            if side
+                && history
+                && let Some(cell) = all.cell(receiver, arrival.hit)
+            {
+                all.counts[i as usize].add(cell);
+            }
         }
     }
 }
