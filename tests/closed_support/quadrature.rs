@@ -27,11 +27,6 @@ pub fn composite(panels: usize) -> Vec<(f64, f64)> {
     (0..panels).flat_map(|p| rule.iter().map(move |(x, w)| ((p as f64 + x) * width, w * width))).collect()
 }
 
-/// Integral over [a, b] by a composite rule.
-pub fn integrate(a: f64, b: f64, panels: usize, f: impl Fn(f64) -> f64) -> f64 {
-    composite(panels).iter().map(|(x, w)| w * f(a + (b - a) * x)).sum::<f64>() * (b - a)
-}
-
 /// Means of `f(u, v)` over nu x nv equal cells of the unit square, in the order of a receiver: row 0 at the top (v = 1).
 pub fn cell_means(nu: usize, nv: usize, panels: usize, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let rule = composite(panels);
