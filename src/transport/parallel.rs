@@ -20,6 +20,10 @@ use super::walk::{Sink, walk};
 /// end on interruption.
 const BATCH: u64 = 1 << 14;
 
+/// Photons of one set, all of which are traced or none. Inside a set photons go by their first coordinate, so a part of
+/// a set is light from a part of the emission only: an interrupt waits for the end of the set, under a second.
+const SET: u64 = 1 << 18;
+
 /// What a range of photons left beside the sink's sums.
 #[derive(Debug, Clone)]
 pub struct Traced {
@@ -36,7 +40,7 @@ pub struct Traced {
 pub struct How<'a> {
     /// Renormalisation on (METHOD 2).
     pub reuse: bool,
-    /// Set from outside to stop; looked at between batches.
+    /// Set from outside to stop; looked at between sets.
     pub interrupt: &'a AtomicBool,
     /// Told the number of photons after each batch.
     pub progress: &'a (dyn Fn(u64) + Sync),
@@ -86,15 +90,33 @@ pub fn trace_range<P: Points, S: Sink>(
         census: Census::default(),
         complete: true,
     };
-    let order = Order::new(&range);
-    let batches = order.slots().div_ceil(BATCH);
-    (0..batches)
+    let mut traced = empty();
+    let mut start = range.start;
+    while start < range.end {
+        if how.interrupt.load(Ordering::Relaxed) {
+            traced.complete = false;
+            break;
+        }
+        let set = start..range.end.min(start.saturating_add(SET));
+        start = set.end;
+        traced.absorb(&trace_set(scene, points, set, how, &sink, &empty));
+    }
+    traced
+}
+
+/// Traces one set to its end, batch by batch over the threads.
+fn trace_set<P: Points, S: Sink>(
+    scene: &Scene,
+    points: &P,
+    set: Range<u64>,
+    how: How<'_>,
+    sink: &(impl Fn() -> S + Sync),
+    empty: &(impl Fn() -> Traced + Sync),
+) -> Traced {
+    let order = Order::new(&set);
+    (0..order.slots().div_ceil(BATCH))
         .into_par_iter()
         .fold(empty, |mut traced, batch| {
-            if how.interrupt.load(Ordering::Relaxed) {
-                traced.complete = false;
-                return traced;
-            }
             let slots = batch * BATCH..order.slots().min((batch + 1) * BATCH);
             let before = traced.ledger.total_emitted();
             trace_batch(scene, points, order.indices(slots), how.reuse, &mut sink(), &mut traced);
@@ -102,11 +124,17 @@ pub fn trace_range<P: Points, S: Sink>(
             traced
         })
         .reduce(empty, |mut a, b| {
-            a.ledger.merge(&b.ledger);
-            a.census.merge(&b.census);
-            a.complete &= b.complete;
+            a.absorb(&b);
             a
         })
+}
+
+impl Traced {
+    fn absorb(&mut self, other: &Self) {
+        self.ledger.merge(&other.ledger);
+        self.census.merge(&other.census);
+        self.complete &= other.complete;
+    }
 }
 
 fn trace_batch<P: Points, S: Sink>(
