@@ -5,6 +5,7 @@
 
 pub mod census;
 pub mod ledger;
+mod order;
 pub mod parallel;
 pub mod walk;
 
