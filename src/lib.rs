@@ -1,4 +1,48 @@
-//! caustix: a light-side caustics simulator.
+//! caustix: a light-side caustics simulator. Photometric files (IES LM-63) and a scene in; illuminance maps in lux out, with
+//! the error of every number.
+//!
+//! The pipeline, in the order of the modules; each uses only those before it:
+//!
+//! 1. [`photometry`] reads a luminaire's file; [`scene::file`] reads a scene, and [`scene::build`] makes a [`scene::Scene`] of
+//!    it: shapes ([`geometry`]), what they are made of ([`bsdf`]), [`emitter`]s, receivers. Everything is checked here, once.
+//! 2. [`run::Plan`] fixes how many photons are traced, in how many replicates, on which [`sequence`].
+//! 3. [`run::trace`]: point i of the sequence gives photon i its coordinates ([`sample`]); they choose its emitter, its
+//!    direction and what happens to it at every surface ([`transport`]), until it is absorbed or escapes.
+//! 4. [`tally`] counts arrivals in the receivers' cells, in integers: any number of threads gives the same bits.
+//! 5. [`estimate`] turns counts of replicates into standard errors; [`run::Outcome`] gives lux and lumens.
+//! 6. [`image`], [`report`] and [`cli`] write EXR, PNG and JSON, and are the command.
+//!
+//! Errors are [`Diagnostic`]s; nothing panics, exits or prints on data. `docs/METHOD.md` has the equations ("METHOD 3" in a
+//! comment is its section 3), `ARCHITECTURE.md` the reasons.
+//!
+//! # Example
+//!
+//! Illuminance in the middle of the plate of the built-in scene, and the flux on all of it:
+//!
+//! ```
+//! use caustix::run::{Plan, Settings, trace};
+//! use caustix::scene::{build::build, description::Description};
+//! use std::sync::atomic::AtomicBool;
+//!
+//! # fn main() -> Result<(), Vec<caustix::Diagnostic>> {
+//! let scene = build(&Description::built_in()?)?;
+//! let settings = Settings { photons: Some(1 << 14), ..Settings::default() };
+//! let plan = Plan::new(&settings).map_err(|e| vec![e])?;
+//! let interrupt = AtomicBool::new(false);
+//! let outcome = trace(&scene, &plan, &interrupt, &|_photons| {}).map_err(|e| vec![e])?;
+//!
+//! let plate = &scene.receivers[0];
+//! let cell = 256 * 512 + 256; // row 256, column 256 of 512 x 512
+//! let middle = outcome.illuminance_lx(0, cell, plate.area_m2(cell));
+//! let flux = outcome.receiver_flux_lm(0);
+//! println!("{} lx in the middle, {} lm +- {:?}", middle.value, flux.value, flux.standard_error);
+//!
+//! assert!((scene.emitters.flux_lm() - 989.58).abs() < 0.01);
+//! assert!((flux.value - 803.06).abs() < 1.0); // what 2^22 photons say
+//! assert!(outcome.ledger.is_balanced());
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod error;
 pub mod units;

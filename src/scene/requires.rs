@@ -1,4 +1,4 @@
-//! What a scene requires: only that machinery runs (METHOD: "model only what a scene requires").
+//! What a scene requires: only that machinery runs (ARCHITECTURE, Numbers: "only what a scene requires").
 //!
 //! What is not in the list costs nothing: no storage and no branch in the inner loop. Today nothing that a scene can
 //! name needs stored photons, wavelengths, weights or a camera, so none of those exists.
