@@ -199,8 +199,9 @@ fn larger(a: f64, b: f64) -> f64 {
 /// Bound of the rounding error [m] of a sheared coordinate of this triangle.
 #[inline(always)]
 pub(crate) fn coordinate_error(triangle: &[[f64; 3]; 3], ray: &Ray) -> f64 {
-    let numbers = triangle.iter().flatten().chain(&ray.o);
-    let size = numbers.fold(0.0, |m, x| larger(x.abs(), m));
+    let [a, b, c] = triangle;
+    let largest = |v: &[f64; 3]| larger(larger(v[0].abs(), v[1].abs()), v[2].abs());
+    let size = larger(larger(largest(a), largest(b)), larger(largest(c), largest(&ray.o)));
     // |v - o| is at most twice the largest coordinate.
     GAMMA * 3.0 * size
 }

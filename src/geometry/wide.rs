@@ -22,26 +22,22 @@ const SLACK: f32 = 1.0 / 1_048_576.0;
 /// Relative slack of a slab distance: three f32 roundings, with room.
 const RELATIVE: f32 = 1.0 / 1_048_576.0;
 
-/// Eight child boxes, `[axis][child]`, and what the children are.
+/// Eight child boxes, `[axis][low or high][child]`, and what the children are.
 #[derive(Debug, Clone)]
 #[repr(C, align(32))]
 pub(crate) struct WideNode {
-    lo: [[f32; WIDTH]; 3],
-    hi: [[f32; WIDTH]; 3],
+    planes: [[[f32; WIDTH]; 2]; 3],
     child: [u32; WIDTH],
 }
 
 impl WideNode {
-    const EMPTY: Self = Self {
-        lo: [[f32::INFINITY; WIDTH]; 3],
-        hi: [[f32::NEG_INFINITY; WIDTH]; 3],
-        child: [NOTHING; WIDTH],
-    };
+    const EMPTY: Self =
+        Self { planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3], child: [NOTHING; WIDTH] };
 
     fn set(&mut self, slot: usize, bounds: &Bounds) {
         for k in 0..3 {
-            self.lo[k][slot] = bounds.lo[k];
-            self.hi[k][slot] = bounds.hi[k];
+            self.planes[k][0][slot] = bounds.lo[k];
+            self.planes[k][1][slot] = bounds.hi[k];
         }
     }
 }
@@ -84,7 +80,9 @@ pub(crate) struct BoxRay {
     far_inverse: [f32; 3],
     near_origin: [f32; 3],
     far_origin: [f32; 3],
-    negative: [bool; 3],
+    /// Which of the two planes the ray meets first: 1 where it runs towards lower coordinates. An index, not a condition:
+    /// choosing among planes by address costs nothing.
+    first_plane: [usize; 3],
     /// Normalised parameter at which the moved ray starts.
     start: f64,
     scale: f64,
@@ -120,7 +118,7 @@ impl BoxRay {
             far_inverse: inverse.map(|x| x * (1.0 + RELATIVE)),
             near_origin: std::array::from_fn(|k| shift(k, !negative[k])),
             far_origin: std::array::from_fn(|k| shift(k, negative[k])),
-            negative,
+            first_plane: negative.map(usize::from),
             start,
             scale: to.scale,
         })
@@ -261,8 +259,8 @@ pub(crate) trait Visitor {
 #[inline(always)]
 fn test(node: &WideNode, ray: &BoxRay, limit: f32) -> ([f32; WIDTH], u32) {
     let pick = |k: usize| {
-        let (lo, hi) = (&node.lo[k], &node.hi[k]);
-        if ray.negative[k] { (hi, lo) } else { (lo, hi) }
+        let first = ray.first_plane[k] & 1;
+        (&node.planes[k][first], &node.planes[k][first ^ 1])
     };
     let [(ax, bx), (ay, by), (az, bz)] = [pick(0), pick(1), pick(2)];
     let ([nx, ny, nz], [ix, iy, iz]) = (ray.near_origin, ray.near_inverse);
