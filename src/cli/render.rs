@@ -48,6 +48,10 @@ pub fn run(args: &RenderArgs) -> u8 {
     let started = Instant::now();
     match render(args, variant, started) {
         Ok(code) => code,
+        Err(errors) if errors.iter().any(|e| e.kind() == Kind::Interrupted) => {
+            let _wrong = fail(&errors);
+            exit::INTERRUPTED
+        }
         Err(errors) => fail(&errors),
     }
 }

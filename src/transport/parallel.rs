@@ -27,8 +27,27 @@ pub struct Traced {
     pub ledger: Ledger,
     /// Coordinates and exceptions.
     pub census: Census,
-    /// False where the interrupt came before all photons were traced.
+    /// False where the interrupt came before all photons were traced. Those that were are then no fair sample of the
+    /// range: neighbours in the order have neighbouring directions.
     pub complete: bool,
+}
+
+impl Traced {
+    /// No photons of this scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            ledger: Ledger::new(scene.emitters.as_slice().len(), scene.geometry.surfaces().len()),
+            census: Census::default(),
+            complete: true,
+        }
+    }
+
+    /// Adds the photons of another range of the same scene.
+    pub fn merge(&mut self, other: &Self) {
+        self.ledger.merge(&other.ledger);
+        self.census.merge(&other.census);
+        self.complete &= other.complete;
+    }
 }
 
 /// How a range of photons is to be traced.
@@ -36,7 +55,7 @@ pub struct Traced {
 pub struct How<'a> {
     /// Renormalisation on (METHOD 2).
     pub reuse: bool,
-    /// Set from outside to stop; looked at between batches.
+    /// Set from outside to stop; looked at before every photon, because some take 100,000 events.
     pub interrupt: &'a AtomicBool,
     /// Told the number of photons after each batch.
     pub progress: &'a (dyn Fn(u64) + Sync),
@@ -81,30 +100,20 @@ pub fn trace_range<P: Points, S: Sink>(
     how: How<'_>,
     sink: impl Fn() -> S + Sync,
 ) -> Traced {
-    let empty = || Traced {
-        ledger: Ledger::new(scene.emitters.as_slice().len(), scene.geometry.surfaces().len()),
-        census: Census::default(),
-        complete: true,
-    };
+    let empty = || Traced::new(scene);
     let order = Order::new(&range);
     let batches = order.slots().div_ceil(BATCH);
     (0..batches)
         .into_par_iter()
         .fold(empty, |mut traced, batch| {
-            if how.interrupt.load(Ordering::Relaxed) {
-                traced.complete = false;
-                return traced;
-            }
             let slots = batch * BATCH..order.slots().min((batch + 1) * BATCH);
             let before = traced.ledger.total_emitted();
-            trace_batch(scene, points, order.indices(slots), how.reuse, &mut sink(), &mut traced);
+            trace_batch(scene, points, order.indices(slots), how, &mut sink(), &mut traced);
             (how.progress)(traced.ledger.total_emitted() - before);
             traced
         })
         .reduce(empty, |mut a, b| {
-            a.ledger.merge(&b.ledger);
-            a.census.merge(&b.census);
-            a.complete &= b.complete;
+            a.merge(&b);
             a
         })
 }
@@ -113,12 +122,16 @@ fn trace_batch<P: Points, S: Sink>(
     scene: &Scene,
     points: &P,
     indices: impl Iterator<Item = u64>,
-    reuse: bool,
+    how: How<'_>,
     sink: &mut S,
     traced: &mut Traced,
 ) {
     for index in indices {
-        let mut coordinates = Coordinates::new(points, index, reuse);
+        if how.interrupt.load(Ordering::Relaxed) {
+            traced.complete = false;
+            return;
+        }
+        let mut coordinates = Coordinates::new(points, index, how.reuse);
         let (emitter, emission) = scene.emitters.emit(&mut coordinates);
         traced.ledger.begin(emitter);
         let exceptions = &mut traced.census.exceptions;
