@@ -5,9 +5,10 @@ use crate::error::Kind;
 use crate::scene::description::{
     ReceiverDescription, ReceiverEvents, ReceiverSide, Reference, ShapeDescription, SurfaceDescription,
 };
+use crate::scene::document::Document;
 use crate::scene::toml_table::{Table, shown};
 
-/// Most cells of one receiver: 2^26, half a gigabyte of sums.
+/// Most cells of one receiver, and of all with cells of their own together: 2^26, two gigabytes of sums.
 const MOST_CELLS: u64 = 1 << 26;
 
 const DEFAULT_CELLS: [u32; 2] = [256, 256];
@@ -56,6 +57,22 @@ pub(super) fn read(
     let events = table.word("events", &EVENTS).unwrap_or(ReceiverEvents::All);
     table.finish();
     Some(ReceiverDescription { name: name?.0, surface: surface?, cells, side, events, place })
+}
+
+/// Refuses receivers that are each small enough but not together: an error at the first that is too much.
+pub(super) fn check_total(document: &Document<'_>, receivers: &[Option<ReceiverDescription>]) {
+    let mut total = 0u64;
+    for receiver in receivers.iter().flatten() {
+        let Some([nu, nv]) = receiver.cells else { continue };
+        total += u64::from(nu) * u64::from(nv);
+        if total > MOST_CELLS {
+            let found =
+                format!("the receiver `{}`, with which there are {total} cells", shown(&receiver.name));
+            let required = "at most 2^26 cells in all receivers of a scene";
+            document.error_at(receiver.place, Kind::Limit, found, required);
+            return;
+        }
+    }
 }
 
 fn read_cells(
