@@ -716,3 +716,14 @@ fn heightfields_together_have_a_cap_on_their_cells() {
         "at most 2^24 cells in all heightfields of a scene",
     );
 }
+
+#[test]
+fn receiver_names_fit_into_a_file_name() {
+    let named = |lamps: usize| {
+        let name = "灯".repeat(lamps);
+        read(&receiver(&format!("[[receiver]]\nname = \"{name}\"\nsurface = \"plate\"")))
+    };
+    assert!(named(66).is_ok(), "198 bytes");
+    let errors = named(67).unwrap_err();
+    assert!(errors[0].required().contains("at most 200 bytes"), "{}", errors[0]);
+}

@@ -22,6 +22,9 @@ const EVENTS: [(&str, ReceiverEvents); 3] = [
     ("indirect", ReceiverEvents::Indirect),
 ];
 
+/// Longest receiver name in bytes: file systems take 255, of which endings and temporary names need some.
+const LONGEST_NAME_BYTES: usize = 200;
+
 /// Base names of files that a run writes besides the receivers', and names Windows does not let a file have.
 const RESERVED: [&str; 6] = ["camera", "report", "con", "prn", "aux", "nul"];
 
@@ -47,8 +50,8 @@ pub(super) fn read(
         names.insert_as(table.document(), name, &name.to_lowercase(), *name_place, index);
         if !is_file_name(name) {
             let found = format!("the receiver name `{}`", shown(name));
-            let required = "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space \
-                            (it becomes a file name), and none of the words camera, report, con, prn, aux, nul";
+            let required = "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space, \
+                            at most 200 bytes of UTF-8 (it becomes a file name), and none of the words camera, report, con, prn, aux, nul";
             table.document().error_at(*name_place, Kind::Range, found, required);
         }
     }
@@ -103,7 +106,8 @@ fn read_cells(
 fn is_file_name(name: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '_' | '-' | '.');
     let edge = |c: char| matches!(c, ' ' | '.');
-    name.chars().all(allowed)
+    name.len() <= LONGEST_NAME_BYTES
+        && name.chars().all(allowed)
         && !name.starts_with(edge)
         && !name.ends_with(edge)
         && !RESERVED.contains(&name.to_lowercase().as_str())
