@@ -3,16 +3,17 @@
 //! R replicates of n photons are traced one after another, each over all threads; of each receiver and account only the
 //! sum and the sum of squares over replicates are kept.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
+use crate::sequence::Sequence;
 use crate::sequence::independent::IndependentPoints;
 use crate::sequence::owen::OwenPoints;
 use crate::sequence::sobol::SobolPoints;
-use crate::sequence::{Points, Sequence};
 use crate::tally::{Moments, Receivers};
 use crate::transport::parallel::{How, Traced, trace_range};
 use crate::transport::{Census, Ledger};
@@ -133,8 +134,8 @@ impl Plan {
 pub enum StoppedBy {
     /// All photons are traced.
     Photons,
-    /// It was interrupted; what is here are the replicates finished by then, or, before the first was, the photons
-    /// traced by then.
+    /// It was interrupted; what is here are the replicates finished by then, or, before the first was, the first 2^m
+    /// photons of it.
     Interrupt,
 }
 
@@ -254,37 +255,38 @@ pub fn trace(
         trace_s: 0.0,
         stopped_by: StoppedBy::Photons,
     };
-    for replicate in 0..plan.replicates {
-        let how = How { reuse: plan.variant.reuses(), interrupt, progress };
-        let traced = trace_replicate(scene, plan, replicate, how, &receivers);
-        if !traced.ledger.is_balanced() {
-            return Err(Diagnostic::new(
-                Kind::Geometry,
-                format!(
-                    "{} photons begun, {} ended",
-                    traced.ledger.total_emitted(),
-                    traced.ledger.total_ended()
-                ),
-                "every photon to end exactly once: this is a defect of caustix, please report it with the scene",
-            ));
+    'run: for replicate in 0..plan.replicates {
+        let mut replica = Traced::new(scene);
+        for stage in stages(plan, replicate) {
+            let how = How { reuse: plan.variant.reuses(), interrupt, progress };
+            let traced = trace_stage(scene, plan, replicate, stage, how, &receivers);
+            check_balance(&traced.ledger)?;
+            if !traced.complete {
+                outcome.stopped_by = StoppedBy::Interrupt;
+                break 'run;
+            }
+            replica.merge(&traced);
+            if replicate == 0 {
+                outcome.start_with(&replica, &receivers);
+            }
         }
-        // Sets of unequal size are no replicates of each other: an unfinished one counts only if it is all there is.
-        if traced.complete || replicate == 0 {
-            outcome.absorb(&traced, &receivers);
+        if replicate > 0 {
+            outcome.absorb(&replica, &receivers);
         }
         receivers.clear();
-        if !traced.complete || interrupt.load(Ordering::Relaxed) {
-            if replicate + 1 < plan.replicates || !traced.complete {
-                outcome.stopped_by = StoppedBy::Interrupt;
-            }
+        if interrupt.load(Ordering::Relaxed) && replicate + 1 < plan.replicates {
+            outcome.stopped_by = StoppedBy::Interrupt;
             break;
         }
     }
     if outcome.photons == 0 {
         return Err(Diagnostic::new(
             Kind::Interrupted,
-            "an interrupt before any photon was traced",
-            "at least one batch of photons for a result",
+            format!(
+                "an interrupt before the first {} photons were traced",
+                plan.photons_per_replicate.min(FIRST_STAGE)
+            ),
+            "at least these for a result",
         ));
     }
     outcome.photon_lm = scene.emitters.flux_lm() / outcome.photons as f64;
@@ -292,7 +294,52 @@ pub fn trace(
     Ok(outcome)
 }
 
+/// Photons of the first stage of the first replicate.
+const FIRST_STAGE: u64 = 1 << 10;
+
+/// The ranges of indices that a replicate is traced in, one after another.
+///
+/// Within a range the order follows the first coordinate, so a part of it is a part of the emitter's directions, not a
+/// sample of them. The first replicate is therefore traced in ranges that double what there is: each end is that of a
+/// net of 2^m points, and an interrupted run falls back on the last. Later replicates count only as a whole.
+fn stages(plan: &Plan, replicate: u32) -> Vec<Range<u64>> {
+    let n = plan.photons_per_replicate;
+    let mut end = if replicate == 0 { n.min(FIRST_STAGE) } else { n };
+    let mut stages = vec![0..end];
+    while end < n {
+        let next = n.min(2 * end);
+        stages.push(end..next);
+        end = next;
+    }
+    stages
+}
+
+fn check_balance(ledger: &Ledger) -> Result<()> {
+    if ledger.is_balanced() {
+        return Ok(());
+    }
+    Err(Diagnostic::new(
+        Kind::Geometry,
+        format!("{} photons begun, {} ended", ledger.total_emitted(), ledger.total_ended()),
+        "every photon to end exactly once: this is a defect of caustix, please report it with the scene",
+    ))
+}
+
 impl Outcome {
+    /// Takes the first replicate, as far as it is, for all there is.
+    fn start_with(&mut self, traced: &Traced, receivers: &Receivers<'_>) {
+        self.photons = traced.ledger.total_emitted();
+        self.replicates = 1;
+        self.accounts.restart(accounts(&traced.ledger));
+        self.ledger = traced.ledger.clone();
+        self.census = traced.census.clone();
+        for (receiver, moments) in self.cells.iter_mut().enumerate() {
+            moments.restart(receivers.counts(receiver).iter());
+        }
+        let totals: Vec<u64> = (0..self.cells.len()).map(|r| receivers.counts(r).iter().sum()).collect();
+        self.totals.restart(totals.into_iter());
+    }
+
     fn absorb(&mut self, traced: &Traced, receivers: &Receivers<'_>) {
         self.photons += traced.ledger.total_emitted();
         self.replicates += 1;
@@ -307,22 +354,22 @@ impl Outcome {
     }
 }
 
-/// One replicate: the sequence is matched here, once, so that the walk is compiled for it.
-fn trace_replicate(
+/// A range of one replicate: the sequence is matched here, once, so that the walk is compiled for it.
+fn trace_stage(
     scene: &Scene,
     plan: &Plan,
     replicate: u32,
+    stage: Range<u64>,
     how: How<'_>,
     receivers: &Receivers<'_>,
 ) -> Traced {
-    fn go<P: Points>(scene: &Scene, points: &P, n: u64, how: How<'_>, receivers: &Receivers<'_>) -> Traced {
-        trace_range(scene, points, 0..n, how, || receivers.sink())
-    }
-    let n = plan.photons_per_replicate;
+    let sink = || receivers.sink();
     match plan.sequence {
-        Sequence::Independent => go(scene, &IndependentPoints::new(plan.seed, replicate), n, how, receivers),
-        Sequence::Sobol => go(scene, &SobolPoints::new(), n, how, receivers),
-        Sequence::SobolOwen => go(scene, &OwenPoints::new(plan.seed, replicate), n, how, receivers),
+        Sequence::Independent => {
+            trace_range(scene, &IndependentPoints::new(plan.seed, replicate), stage, how, sink)
+        }
+        Sequence::Sobol => trace_range(scene, &SobolPoints::new(), stage, how, sink),
+        Sequence::SobolOwen => trace_range(scene, &OwenPoints::new(plan.seed, replicate), stage, how, sink),
     }
 }
 

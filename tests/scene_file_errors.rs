@@ -681,3 +681,49 @@ fn a_byte_order_mark_and_windows_line_ends_change_no_place() {
     let errors = read(&format!("\u{feff}{plain}")).unwrap_err();
     assert_eq!((errors[0].line(), errors[0].column()), (Some(places[0].0), Some(places[0].1)));
 }
+
+#[test]
+fn receivers_together_have_a_cap_on_their_cells() {
+    let one =
+        |name: &str| format!("[[receiver]]\nname = \"{name}\"\nsurface = \"plate\"\ncells = [8192, 4096]\n");
+    assert!(read(&receiver(&(one("a") + &one("b")))).is_ok(), "2^26 cells in two");
+    expect(
+        &receiver(&(one("a") + &one("b") + &one("c").replace("[[", "«[["))),
+        Kind::Limit,
+        "the receiver `c`, with which there are 100663296 cells",
+        "at most 2^26 cells in all receivers of a scene",
+    );
+}
+
+#[test]
+fn heightfields_together_have_a_cap_on_their_cells() {
+    let field = |i: usize| {
+        format!(
+            "[[surface]]\nname = \"f{i}\"\nmaterial = \"black\"\ntype = \"heightfield\"\norigin = [0, 0, 1]\n\
+             size = [1, 1]\ncells = [2048, 2048]\nfacing = \"up\"\nwaves = [{{ amplitude = 0.1, wavelength = 1, direction_deg = 0, phase_deg = 0 }}]\n"
+        )
+    };
+    let four: String = (0..4).map(field).collect();
+    assert_eq!(
+        read(&receiver(&format!("{RECEIVER}{four}"))).unwrap().surfaces.len(),
+        5,
+        "2^24 cells in four"
+    );
+    expect(
+        &receiver(&format!("{RECEIVER}{four}{}", field(4).replace("[[", "«[["))),
+        Kind::Limit,
+        "the heightfield `f4`, with which there are 20971520 cells",
+        "at most 2^24 cells in all heightfields of a scene",
+    );
+}
+
+#[test]
+fn receiver_names_fit_into_a_file_name() {
+    let named = |lamps: usize| {
+        let name = "灯".repeat(lamps);
+        read(&receiver(&format!("[[receiver]]\nname = \"{name}\"\nsurface = \"plate\"")))
+    };
+    assert!(named(66).is_ok(), "198 bytes");
+    let errors = named(67).unwrap_err();
+    assert!(errors[0].required().contains("at most 200 bytes"), "{}", errors[0]);
+}

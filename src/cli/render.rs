@@ -48,6 +48,10 @@ pub fn run(args: &RenderArgs) -> u8 {
     let started = Instant::now();
     match render(args, variant, started) {
         Ok(code) => code,
+        Err(errors) if errors.iter().any(|e| e.kind() == Kind::Interrupted) => {
+            let _wrong = fail(&errors);
+            exit::INTERRUPTED
+        }
         Err(errors) => fail(&errors),
     }
 }
@@ -73,16 +77,24 @@ fn render(
         .enumerate()
         .map(|(i, receiver)| ReceiverStatistics::new(&outcome, receiver, i))
         .collect();
-    let mut files = Vec::new();
+    // A file that cannot be written must not cost the others: its error is told at the end.
+    let (mut files, mut unwritten) = (Vec::new(), Vec::new());
     for (receiver, s) in scene.receivers.iter().zip(&statistics) {
-        files.push(maps::write_receiver(&directory, &scene, &outcome, receiver, s).map_err(one)?);
+        let written = maps::write_receiver(&directory, &scene, &outcome, receiver, s);
+        files.push(written.unwrap_or_else(|e| {
+            unwritten.push(e);
+            Vec::new()
+        }));
     }
     let total_s = started.elapsed().as_secs_f64();
     let report = Report::new(&scene, &outcome, &statistics, &files, total_s);
-    write_report(&directory.join("report.json"), &report).map_err(one)?;
+    unwritten.extend(write_report(&directory.join("report.json"), &report).err());
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
         print(&format!("written to {}\n", directory.display()));
+    }
+    if !unwritten.is_empty() {
+        return Err(unwritten);
     }
     if outcome.stopped_by == StoppedBy::Interrupt {
         say(&format!(

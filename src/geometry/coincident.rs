@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::{Rectangle, Shape, Surface};
 use crate::error::{Diagnostic, Kind};
 
-/// One diagnostic for every pair of surfaces that coincide: a triangle of equal corners (to the bit), equal spheres or
-/// paraboloids, rectangles that overlap in one plane.
-pub fn coincident_surfaces(surfaces: &[Surface]) -> Vec<Diagnostic> {
+/// Every pair of surfaces that coincide, by number, and a diagnostic about it: a triangle of equal corners (to the
+/// bit), equal spheres or paraboloids, rectangles that overlap in one plane.
+pub fn coincident_surfaces(surfaces: &[Surface]) -> Vec<([usize; 2], Diagnostic)> {
     let mut pairs = equal_triangles(surfaces);
     for (j, b) in surfaces.iter().enumerate() {
         for (i, a) in surfaces[..j].iter().enumerate() {
@@ -27,8 +27,9 @@ pub fn coincident_surfaces(surfaces: &[Surface]) -> Vec<Diagnostic> {
     let message = |&(i, j): &(usize, usize)| {
         let found =
             format!("surfaces \"{}\" and \"{}\" in the same place", surfaces[i].name, surfaces[j].name);
-        Diagnostic::new(Kind::Geometry, found, "surfaces that do not coincide")
-            .hint("leave one of them out, or move them apart")
+        let diagnostic = Diagnostic::new(Kind::Geometry, found, "surfaces that do not coincide")
+            .hint("leave one of them out, or move them apart");
+        ([i, j], diagnostic)
     };
     pairs.iter().map(message).collect()
 }
@@ -112,7 +113,7 @@ mod tests {
             named("die", cube()),
         ];
         let found: Vec<String> =
-            coincident_surfaces(&surfaces).iter().map(|d| d.found().to_owned()).collect();
+            coincident_surfaces(&surfaces).iter().map(|(_, d)| d.found().to_owned()).collect();
         let expected = [("a", "over"), ("beside", "over"), ("s", "t"), ("cube", "die")];
         assert_eq!(found.len(), expected.len(), "{found:?}");
         for (text, (a, b)) in found.iter().zip(expected) {

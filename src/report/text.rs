@@ -138,6 +138,15 @@ fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> std::fmt:
 pub fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
     match error {
         Some(e) if e > 0.0 && value != 0.0 => {
+            let magnitude = libm::floor(libm::log10(value.abs().max(e)));
+            if !(-5.0..9.0).contains(&magnitude) {
+                // So many digits that two of the error show, both numbers in one power of ten.
+                let power = libm::exp10(magnitude);
+                let decimals = (1.0 + magnitude - libm::floor(libm::log10(e))).clamp(0.0, 12.0) as usize;
+                let (v, s) = (value / power, e / power);
+                let percent = rounded(100.0 * e / value.abs(), 2);
+                return format!("({v:.decimals$} +- {s:.decimals$})e{magnitude} {unit} ({percent} %)");
+            }
             // Decimals so that two digits of the error show.
             let decimals = (1.0 - libm::floor(libm::log10(e))).clamp(0.0, 12.0) as usize;
             format!("{value:.decimals$} +- {e:.decimals$} {unit} ({} %)", rounded(100.0 * e / value.abs(), 2))
@@ -196,5 +205,7 @@ mod tests {
         assert_eq!(rounded(18.733, 3), "18.7");
         assert_eq!(with_error(123.456, Some(0.0123), "lm"), "123.456 +- 0.012 lm (0.01 %)");
         assert_eq!(with_error(5.0, None, "lx"), "5 lx");
+        assert_eq!(with_error(1.479_27e-10, Some(3.52e-14), "lx"), "(1.47927 +- 0.00035)e-10 lx (0.024 %)");
+        assert_eq!(with_error(2.530_35e14, Some(1.26e12), "lx"), "(2.530 +- 0.013)e14 lx (0.5 %)");
     }
 }

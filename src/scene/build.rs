@@ -16,9 +16,10 @@ use super::description::{
     BeamSection, Description, EmitterDescription, EmitterShape, Facing, HeightfieldDescription, MaterialKind,
     Place, ReliefDescription, ShapeDescription, SurfaceDescription,
 };
+use super::file::MOST_HEIGHTFIELD_CELLS;
 use super::receiver::ReceiverSpec;
 use super::source::sha256_hex;
-use super::{Identity, Scene, SceneParts};
+use super::{Identity, Places, Scene, SceneParts};
 
 /// Builds the scene that a description describes.
 ///
@@ -57,6 +58,11 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
     if !errors.is_empty() {
         return Err(errors);
     }
+    parts.places = Places {
+        surfaces: description.surfaces.iter().map(|s| s.place).collect(),
+        emitters: description.emitters.iter().map(|e| e.place).collect(),
+        receivers: description.receivers.iter().map(|r| r.place).collect(),
+    };
     Scene::new(parts)
         .map_err(|errors| errors.into_iter().map(|e| e.in_file(&description.source.name)).collect())
 }
@@ -155,7 +161,17 @@ fn heightfield(d: &Description, field: &HeightfieldDescription) -> Result<Height
             let image = HeightImage::read(&path, *low, *high)?;
             let [columns, rows] = image.size();
             let own = [columns as u32 - 1, rows as u32 - 1];
-            (cells.unwrap_or(own), Formula::Image(image))
+            let cells = cells.unwrap_or(own);
+            // A picture of one grey packs a thousandfold: a small file must not ask for gigabytes of triangles.
+            if u64::from(cells[0]) * u64::from(cells[1]) > MOST_HEIGHTFIELD_CELLS {
+                return Err(Diagnostic::new(
+                    Kind::Limit,
+                    format!("a heightfield with a vertex for each of {columns} x {rows} pixels"),
+                    format!("at most {MOST_HEIGHTFIELD_CELLS} cells"),
+                )
+                .hint("give cells = [along x, along y]: heights between pixels are interpolated"));
+            }
+            (cells, Formula::Image(image))
         }
     };
     let min = DVec2::new(field.origin.x, field.origin.y);

@@ -7,9 +7,19 @@ use crate::emitter::{Emitter, collimated::CrossSection};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts, coincident_surfaces};
 
-/// Every pair of surfaces that lie in the same place: neither would be first.
-pub fn coincidences(surfaces: &[Surface]) -> Vec<Diagnostic> {
-    coincident_surfaces(surfaces)
+use super::description::Place;
+
+/// Every pair of surfaces that lie in the same place: neither would be first. Each points to the second of the two.
+pub fn coincidences(surfaces: &[Surface], places: &[Place]) -> Vec<Diagnostic> {
+    coincident_surfaces(surfaces).into_iter().map(|([_, second], e)| at_place(places, second, e)).collect()
+}
+
+/// The diagnostic at the place of part number `index`, if the scene comes from a file.
+pub fn at_place(places: &[Place], index: usize, diagnostic: Diagnostic) -> Diagnostic {
+    match places.get(index) {
+        Some(place) => diagnostic.at(place.line, place.column),
+        None => diagnostic,
+    }
 }
 
 /// The side state of photons of an emitter.

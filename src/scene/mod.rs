@@ -20,6 +20,7 @@ use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
 
+use description::Place;
 use receiver::{Receiver, ReceiverSpec};
 
 /// What a run needs to be repeated, beside its settings: the scene and the hashes of the files it names.
@@ -67,6 +68,19 @@ pub struct SceneParts {
     pub identity: Identity,
     /// Warnings so far.
     pub warnings: Vec<Diagnostic>,
+    /// Where surfaces, emitters and receivers stand in the scene file, for messages; empty for a scene made in code.
+    pub places: Places,
+}
+
+/// Where the parts of a scene stand in its file, each in the order of the parts.
+#[derive(Debug, Default)]
+pub struct Places {
+    /// Of surfaces.
+    pub surfaces: Vec<Place>,
+    /// Of emitters.
+    pub emitters: Vec<Place>,
+    /// Of receivers.
+    pub receivers: Vec<Place>,
 }
 
 impl Scene {
@@ -78,20 +92,24 @@ impl Scene {
     pub fn new(parts: SceneParts) -> std::result::Result<Self, Vec<Diagnostic>> {
         let (surfaces, bsdfs): (Vec<_>, Vec<_>) = parts.surfaces.into_iter().unzip();
         let (emitter_names, emitters): (Vec<_>, Vec<_>) = parts.emitters.into_iter().unzip();
-        let mut errors = check::coincidences(&surfaces);
+        let mut errors = check::coincidences(&surfaces, &parts.places.surfaces);
         let geometry =
             Geometry::build(surfaces).map_err(|e| [std::mem::take(&mut errors), vec![e]].concat())?;
         let keep = |result: Result<_>, errors: &mut Vec<Diagnostic>| result.map_err(|e| errors.push(e)).ok();
         let receivers: Vec<Receiver> = parts
             .receivers
             .iter()
-            .filter_map(|spec| keep(Receiver::new(spec, &geometry), &mut errors))
+            .enumerate()
+            .filter_map(|(i, spec)| {
+                let receiver = Receiver::new(spec, &geometry);
+                keep(receiver.map_err(|e| check::at_place(&parts.places.receivers, i, e)), &mut errors)
+            })
             .collect();
         let mut starts = Vec::with_capacity(emitters.len());
-        for (name, emitter) in emitter_names.iter().zip(&emitters) {
+        for (i, (name, emitter)) in emitter_names.iter().zip(&emitters).enumerate() {
             match check::start(name, emitter, &geometry, &bsdfs) {
                 Ok(start) => starts.push(start),
-                Err(e) => errors.push(e),
+                Err(e) => errors.push(check::at_place(&parts.places.emitters, i, e)),
             }
         }
         let emitters = Emitters::new(emitters).map_err(|e| errors.push(e)).ok();

@@ -59,6 +59,14 @@ impl Moments {
         Self { sum: vec![0; cells], square: vec![0; cells] }
     }
 
+    /// Starts again with the counts of the first replicate, as far as it is.
+    pub fn restart(&mut self, counts: impl Iterator<Item = u64>) {
+        for ((sum, square), count) in self.sum.iter_mut().zip(&mut self.square).zip(counts) {
+            *sum = count;
+            *square = u128::from(count) * u128::from(count);
+        }
+    }
+
     /// Takes in the counts of a finished replicate.
     pub fn absorb(&mut self, counts: impl Iterator<Item = u64>) {
         for ((sum, square), count) in self.sum.iter_mut().zip(&mut self.square).zip(counts) {

@@ -5,7 +5,6 @@
 
 pub mod census;
 pub mod ledger;
-mod order;
 pub mod parallel;
 pub mod walk;
 

@@ -8,23 +8,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::emitter::Emission;
 use crate::sample::coordinates::Coordinates;
 use crate::scene::Scene;
 use crate::sequence::Points;
 
 use super::census::Census;
 use super::ledger::Ledger;
-use super::order::{Order, neighbours};
 use super::walk::{Sink, walk};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.
-const BATCH: u64 = 1 << 12;
-
-/// Photons of one set, all of which are traced or none. Inside a set photons go by their first coordinate, so a part of
-/// a set is light from a part of the emission only: an interrupt waits for the end of the set, under a second.
-const SET: u64 = 1 << 18;
+const BATCH: u64 = 1 << 14;
 
 /// What a range of photons left beside the sink's sums.
 #[derive(Debug, Clone)]
@@ -33,8 +27,27 @@ pub struct Traced {
     pub ledger: Ledger,
     /// Coordinates and exceptions.
     pub census: Census,
-    /// False where the interrupt came before all photons were traced.
+    /// False where the interrupt came before all photons were traced. Those that were are then no fair sample of the
+    /// range: neighbours in the order have neighbouring directions.
     pub complete: bool,
+}
+
+impl Traced {
+    /// No photons of this scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            ledger: Ledger::new(scene.emitters.as_slice().len(), scene.geometry.surfaces().len()),
+            census: Census::default(),
+            complete: true,
+        }
+    }
+
+    /// Adds the photons of another range of the same scene.
+    pub fn merge(&mut self, other: &Self) {
+        self.ledger.merge(&other.ledger);
+        self.census.merge(&other.census);
+        self.complete &= other.complete;
+    }
 }
 
 /// How a range of photons is to be traced.
@@ -42,10 +55,41 @@ pub struct Traced {
 pub struct How<'a> {
     /// Renormalisation on (METHOD 2).
     pub reuse: bool,
-    /// Set from outside to stop; looked at between sets.
+    /// Set from outside to stop; looked at before every photon, because some take 100,000 events.
     pub interrupt: &'a AtomicBool,
     /// Told the number of photons after each batch.
     pub progress: &'a (dyn Fn(u64) + Sync),
+}
+
+/// The order in which a range of indices is traced: by bit-reversed offset.
+///
+/// The first coordinate of a Sobol' point is the bit-reversed index, scrambled digit by digit, so in this order
+/// neighbours have neighbouring first coordinates: the same emitter, the same table cell, nearly the same ray. They visit
+/// the same nodes of the search tree while these are in the cache. The sums do not depend on the order.
+struct Order {
+    start: u64,
+    length: u64,
+    bits: u32,
+}
+
+impl Order {
+    fn new(range: &Range<u64>) -> Self {
+        let length = range.end.saturating_sub(range.start);
+        Self { start: range.start, length, bits: length.max(2).next_power_of_two().trailing_zeros() }
+    }
+
+    /// Slots of the order: a power of two, some of them empty where the range is not one.
+    fn slots(&self) -> u64 {
+        1 << self.bits
+    }
+
+    fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
+        let Self { start, length, bits } = *self;
+        slots
+            .map(move |slot| slot.reverse_bits() >> (64 - bits))
+            .filter(move |offset| *offset < length)
+            .map(move |offset| start + offset)
+    }
 }
 
 /// Traces the photons of these indices; `sink` makes one handle a batch, all of which add to the same sums.
@@ -56,87 +100,58 @@ pub fn trace_range<P: Points, S: Sink>(
     how: How<'_>,
     sink: impl Fn() -> S + Sync,
 ) -> Traced {
-    let empty = || Traced {
-        ledger: Ledger::new(scene.emitters.as_slice().len(), scene.geometry.surfaces().len()),
-        census: Census::default(),
-        complete: true,
-    };
-    let mut traced = empty();
-    let mut start = range.start;
-    while start < range.end {
-        if how.interrupt.load(Ordering::Relaxed) {
-            traced.complete = false;
-            break;
-        }
-        let set = start..range.end.min(start.saturating_add(SET));
-        start = set.end;
-        traced.absorb(&trace_set(scene, points, set, how, &sink, &empty));
-    }
-    traced
-}
-
-/// Traces one set to its end, batch by batch over the threads.
-fn trace_set<P: Points, S: Sink>(
-    scene: &Scene,
-    points: &P,
-    set: Range<u64>,
-    how: How<'_>,
-    sink: &(impl Fn() -> S + Sync),
-    empty: &(impl Fn() -> Traced + Sync),
-) -> Traced {
-    let order = Order::new(&set);
-    (0..order.slots().div_ceil(BATCH))
+    let empty = || Traced::new(scene);
+    let order = Order::new(&range);
+    let batches = order.slots().div_ceil(BATCH);
+    (0..batches)
         .into_par_iter()
         .fold(empty, |mut traced, batch| {
             let slots = batch * BATCH..order.slots().min((batch + 1) * BATCH);
             let before = traced.ledger.total_emitted();
-            trace_batch(scene, points, order.indices(slots), how.reuse, &mut sink(), &mut traced);
+            trace_batch(scene, points, order.indices(slots), how, &mut sink(), &mut traced);
             (how.progress)(traced.ledger.total_emitted() - before);
             traced
         })
         .reduce(empty, |mut a, b| {
-            a.absorb(&b);
+            a.merge(&b);
             a
         })
 }
 
-impl Traced {
-    fn absorb(&mut self, other: &Self) {
-        self.ledger.merge(&other.ledger);
-        self.census.merge(&other.census);
-        self.complete &= other.complete;
-    }
-}
-
-/// Emits the photons of a batch, puts neighbours together, and walks them.
 fn trace_batch<P: Points, S: Sink>(
     scene: &Scene,
     points: &P,
     indices: impl Iterator<Item = u64>,
-    reuse: bool,
+    how: How<'_>,
     sink: &mut S,
     traced: &mut Traced,
 ) {
-    let mut started: Vec<Started<'_, P>> = Vec::with_capacity(BATCH as usize);
     for index in indices {
-        let mut coordinates = Coordinates::new(points, index, reuse);
+        if how.interrupt.load(Ordering::Relaxed) {
+            traced.complete = false;
+            return;
+        }
+        let mut coordinates = Coordinates::new(points, index, how.reuse);
         let (emitter, emission) = scene.emitters.emit(&mut coordinates);
         traced.ledger.begin(emitter);
-        started.push(Started { emitter, emission, coordinates });
-    }
-    let (low, high) = scene.geometry.bounds();
-    for at in neighbours(started.iter().map(|s| s.emission), (high - low).length()) {
-        let Started { emitter, emission, coordinates } = &mut started[at as usize];
         let exceptions = &mut traced.census.exceptions;
-        let end = walk(scene, *emission, scene.start(*emitter), coordinates, sink, exceptions);
+        let end = walk(scene, emission, scene.start(emitter), &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
         traced.census.count(coordinates.drawn(), coordinates.drawn_for());
     }
 }
 
-/// A photon that has been emitted and waits for its walk.
-struct Started<'p, P> {
-    emitter: usize,
-    emission: Emission,
-    coordinates: Coordinates<'p, P>,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_index_is_visited_once_whatever_the_range() {
+        for range in [0..1, 0..2, 5..6, 0..1000, 7..1031, 1 << 40..(1 << 40) + 4097, 3..3] {
+            let order = Order::new(&range);
+            let mut seen: Vec<u64> = order.indices(0..order.slots()).collect();
+            seen.sort_unstable();
+            assert_eq!(seen, range.collect::<Vec<_>>());
+        }
+    }
 }

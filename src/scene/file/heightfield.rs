@@ -3,12 +3,16 @@
 use super::{ANGLE, COORDINATE, LENGTH};
 use crate::error::Kind;
 use crate::scene::description::{
-    Facing, HeightfieldDescription, OctaveDescription, Placed, ReliefDescription, WaveDescription,
+    Facing, HeightfieldDescription, OctaveDescription, Placed, ReliefDescription, ShapeDescription,
+    SurfaceDescription, WaveDescription,
 };
-use crate::scene::toml_table::{Interval, Table};
+use crate::scene::document::Document;
+use crate::scene::toml_table::{Interval, Table, shown};
 
 /// Most cells of one heightfield: 2^22, eight million triangles.
-const MOST_CELLS: u64 = 1 << 22;
+pub const MOST_CELLS: u64 = 1 << 22;
+/// Most cells of all heightfields of a scene: 2^24, about eight gigabytes of triangles and search structure.
+const MOST_CELLS_TOGETHER: u64 = 1 << 24;
 const MOST_WAVES: usize = 256;
 const MOST_OCTAVES: usize = 32;
 
@@ -37,6 +41,27 @@ pub(super) fn read(table: &mut Table<'_, '_>) -> Option<HeightfieldDescription> 
         smooth,
         relief: relief?,
     })
+}
+
+/// Refuses heightfields that are each small enough but not together: an error at the first that is too much. An image
+/// without cells counts by its file, which has a cap of its own.
+pub(super) fn check_total(document: &Document<'_>, surfaces: &[Option<SurfaceDescription>]) {
+    let mut total = 0u64;
+    for surface in surfaces.iter().flatten() {
+        let ShapeDescription::Heightfield(field) = &surface.shape else { continue };
+        let cells = match &field.relief {
+            ReliefDescription::Waves { cells, .. } | ReliefDescription::Noise { cells, .. } => Some(*cells),
+            ReliefDescription::Image { cells, .. } => *cells,
+        };
+        total += cells.map_or(0, |[nx, ny]| u64::from(nx) * u64::from(ny));
+        if total > MOST_CELLS_TOGETHER {
+            let found =
+                format!("the heightfield `{}`, with which there are {total} cells", shown(&surface.name));
+            let required = "at most 2^24 cells in all heightfields of a scene";
+            document.error_at(surface.place, Kind::Limit, found, required);
+            return;
+        }
+    }
 }
 
 fn read_relief(table: &mut Table<'_, '_>) -> Option<ReliefDescription> {

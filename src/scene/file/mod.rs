@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+pub use self::heightfield::MOST_CELLS as MOST_HEIGHTFIELD_CELLS;
+
 use self::names::Names;
 use super::description::{Description, Place, Placed, RunDescription};
 use super::document::Document;
@@ -128,6 +130,7 @@ impl Parts {
             .enumerate()
             .map(|(index, table)| surface::read(table, index, &mut surface_names, &material_names))
             .collect();
+        heightfield::check_total(document, &surfaces);
 
         let mut names = Names::new("receiver");
         let receivers: Vec<_> = parts_named(&mut root, "receiver")
@@ -135,6 +138,7 @@ impl Parts {
             .enumerate()
             .map(|(index, table)| receiver::read(table, index, &mut names, &surface_names, &surfaces))
             .collect();
+        receiver::check_total(document, &receivers);
         if root.place_of("receiver").is_none() {
             let required = "at least one [[receiver]], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);

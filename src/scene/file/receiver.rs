@@ -5,9 +5,10 @@ use crate::error::Kind;
 use crate::scene::description::{
     ReceiverDescription, ReceiverEvents, ReceiverSide, Reference, ShapeDescription, SurfaceDescription,
 };
+use crate::scene::document::Document;
 use crate::scene::toml_table::{Table, shown};
 
-/// Most cells of one receiver: 2^26, half a gigabyte of sums.
+/// Most cells of one receiver, and of all with cells of their own together: 2^26, two gigabytes of sums.
 const MOST_CELLS: u64 = 1 << 26;
 
 const DEFAULT_CELLS: [u32; 2] = [256, 256];
@@ -20,6 +21,9 @@ const EVENTS: [(&str, ReceiverEvents); 3] = [
     ("direct", ReceiverEvents::Direct),
     ("indirect", ReceiverEvents::Indirect),
 ];
+
+/// Longest receiver name in bytes: file systems take 255, of which endings and temporary names need some.
+const LONGEST_NAME_BYTES: usize = 200;
 
 /// Base names of files that a run writes besides the receivers', and names Windows does not let a file have.
 const RESERVED: [&str; 6] = ["camera", "report", "con", "prn", "aux", "nul"];
@@ -46,8 +50,8 @@ pub(super) fn read(
         names.insert_as(table.document(), name, &name.to_lowercase(), *name_place, index);
         if !is_file_name(name) {
             let found = format!("the receiver name `{}`", shown(name));
-            let required = "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space \
-                            (it becomes a file name), and none of the words camera, report, con, prn, aux, nul";
+            let required = "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space, \
+                            at most 200 bytes of UTF-8 (it becomes a file name), and none of the words camera, report, con, prn, aux, nul";
             table.document().error_at(*name_place, Kind::Range, found, required);
         }
     }
@@ -56,6 +60,22 @@ pub(super) fn read(
     let events = table.word("events", &EVENTS).unwrap_or(ReceiverEvents::All);
     table.finish();
     Some(ReceiverDescription { name: name?.0, surface: surface?, cells, side, events, place })
+}
+
+/// Refuses receivers that are each small enough but not together: an error at the first that is too much.
+pub(super) fn check_total(document: &Document<'_>, receivers: &[Option<ReceiverDescription>]) {
+    let mut total = 0u64;
+    for receiver in receivers.iter().flatten() {
+        let Some([nu, nv]) = receiver.cells else { continue };
+        total += u64::from(nu) * u64::from(nv);
+        if total > MOST_CELLS {
+            let found =
+                format!("the receiver `{}`, with which there are {total} cells", shown(&receiver.name));
+            let required = "at most 2^26 cells in all receivers of a scene";
+            document.error_at(receiver.place, Kind::Limit, found, required);
+            return;
+        }
+    }
 }
 
 fn read_cells(
@@ -86,7 +106,8 @@ fn read_cells(
 fn is_file_name(name: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '_' | '-' | '.');
     let edge = |c: char| matches!(c, ' ' | '.');
-    name.chars().all(allowed)
+    name.len() <= LONGEST_NAME_BYTES
+        && name.chars().all(allowed)
         && !name.starts_with(edge)
         && !name.ends_with(edge)
         && !RESERVED.contains(&name.to_lowercase().as_str())
