@@ -107,11 +107,28 @@ fn wrong_usage_exits_2_and_help_and_version_exit_0() {
     for line in ["frobnicate", "render --photons", "render a b", "photometry", "render --threads x"] {
         s.is_told(line, 2, &["error:"]);
     }
-    for line in ["--help", "--version", "render --help", "photometry --help", "check --help"] {
+    // A number that is none is told with what is required, negative ones included: they are no options.
+    for (line, option, required) in [
+        ("render --seed x", "'x' for '--seed <K>'", "from 0 to 18446744073709551615"),
+        ("render --seed -1", "'-1' for '--seed <K>'", "from 0 to 18446744073709551615"),
+        ("render --seed 1.5", "'1.5' for '--seed <K>'", "from 0 to 18446744073709551615"),
+        ("render --replicates -8", "'-8' for '--replicates <R>'", "from 1 to 65536"),
+        ("render --threads x", "'x' for '--threads <T>'", "from 1 to 1024"),
+    ] {
+        s.is_told(line, 2, &["error: invalid value ", option, "required: a whole number ", required]);
+    }
+    for line in
+        ["--help", "--version", "help", "help render", "render --help", "photometry --help", "check --help"]
+    {
         let (code, out, err) = s.types(line);
         assert_eq!((code, err.as_str()), (0, ""), "{line}");
         assert!(out.contains("caustix"), "{line}");
     }
+    for line in ["--help", "help"] {
+        let (_, out, _) = s.types(line);
+        assert!(out.contains("Without a command the built-in scene is rendered"), "{line}\n{out}");
+    }
+    assert_eq!(s.types("help render").1, s.types("render --help").1);
 }
 
 #[test]
@@ -119,6 +136,9 @@ fn impossible_requests_exit_1_and_say_what_is_required() {
     let s = Stranger::new();
     for (line, found, required) in [
         ("render --photons 0", "--photons `0`", "from 1 to 2^48"),
+        ("render --photons -5", "--photons `-5`", "from 1 to 2^48"),
+        ("render --photons -2^22", "--photons `-2^22`", "from 1 to 2^48"),
+        ("render --photons --quiet", "--photons `--quiet`", "from 1 to 2^48"),
         ("render --photons abc", "--photons `abc`", "4_456_448, 4.5e6 or 2^22"),
         ("render --photons 4.5", "not whole", "a whole number"),
         ("render --photons 1e99", "more than 2^48", "from 1 to 2^48"),
@@ -129,8 +149,8 @@ fn impossible_requests_exit_1_and_say_what_is_required() {
         ("render --variant qcm", "--variant qcm", "qmc-inverse, qmc-inverse-reuse"),
         ("render --threads 0 --photons 64", "--threads 0", "1 to 1024 threads"),
         ("render --threads 5000 --photons 64", "--threads 5000", "1 to 1024 threads"),
-        ("render nowhere.toml", "nowhere.toml", "a file that can be read"),
-        ("check nowhere.toml", "nowhere.toml", "a file that can be read"),
+        ("render nowhere.toml", "nowhere.toml: found", "a file that can be read"),
+        ("check nowhere.toml", "nowhere.toml: found", "a file that can be read"),
         ("photometry nowhere.ies", "nowhere.ies: found", "a readable file"),
     ] {
         s.is_told(line, 1, &[found, "; required: ", required]);
@@ -179,6 +199,28 @@ fn broken_files_are_named_with_line_and_column() {
     let scene = ABSORBER_SCENE.replace("\"isotropic\"", "\"photometric\"\nfile = \"gone.ies\"");
     fs::write(s.path("scene.toml"), scene).unwrap();
     s.is_told("check scene.toml", 1, &["scene.toml:4:8: found", "gone.ies"]);
+}
+
+#[test]
+fn a_toml_text_with_too_much_in_it_is_told_the_rule() {
+    let s = Stranger::new();
+    for (text, required) in [
+        ("a == 1", "one `=` between a key and its value"),
+        ("a = 01", "a number without leading zeros"),
+        ("a = 00.5", "a number without leading zeros"),
+        ("a = +-3", "a number with at most one sign"),
+        ("a = -0x1f", "begins with 0x, 0o or 0b and has no sign"),
+        ("a = 1__0", "a digit before and after every `_`"),
+        ("a = _1", "; required: "),
+        ("a = 0x0x1", "; required: "),
+        ("a = --inf", "; required: "),
+        ("a = [1] ] 2", "; required: "),
+    ] {
+        fs::write(s.path("scene.toml"), format!("{text}\n")).unwrap();
+        s.is_told("check scene.toml", 1, &["scene.toml:1:", required]);
+        let (_, _, err) = s.types("check scene.toml");
+        assert!(!err.contains("required: nothing"), "{text}\n{err}");
+    }
 }
 
 #[test]
@@ -266,6 +308,13 @@ fn check_json_has_the_keys_of_the_contract() {
     let error = json["errors"].as_array().unwrap().iter().find(|e| e["line"] == 5).unwrap();
     assert_keys(error, &["file", "line", "column", "found", "required"], &[]);
     assert_eq!((&error["file"], &error["column"]), (&"scene.toml".into(), &1.into()));
+
+    // A scene that is not there has a name all the same, but no line.
+    let (code, out, _) = s.types("check --json nowhere.toml");
+    let json: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((code, json["errors"].as_array().unwrap().len()), (1, 1));
+    let error = &json["errors"][0];
+    assert_eq!((&error["file"], &error["line"]), (&"nowhere.toml".into(), &Value::Null));
 }
 
 #[test]

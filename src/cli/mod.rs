@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand};
 
 use crate::error::{Diagnostic, Kind};
+use crate::run::MAX_REPLICATES;
 use crate::scene::count::parse_count;
 
 /// Exit codes of the contract.
@@ -27,7 +28,12 @@ pub mod exit {
 /// Photons from photometric files through glass, water and mirrors: illuminance maps in lux, and the error of every
 /// number.
 #[derive(Debug, Parser)]
-#[command(name = "caustix", version, about, disable_help_subcommand = true)]
+#[command(
+    name = "caustix",
+    version,
+    about,
+    after_help = "Without a command the built-in scene is rendered into ./caustix-out/, as by `caustix render`."
+)]
 struct Command {
     #[command(subcommand)]
     subcommand: Option<Sub>,
@@ -64,7 +70,7 @@ pub struct RenderArgs {
     #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
     pub output: PathBuf,
     /// Photons in all, like 4_456_448, 4.5e6 or 2^22 [default: the scene's, else 2^22].
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub photons: Option<String>,
     /// Algorithm variant: qmc-inverse-reuse (default) or qmc-inverse.
     #[arg(long, value_name = "V")]
@@ -73,14 +79,14 @@ pub struct RenderArgs {
     #[arg(long, value_name = "S")]
     pub sequence: Option<String>,
     /// Seed of the randomisation [default: the scene's, else 1].
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
     pub seed: Option<u64>,
     /// Independent replicates, from which the standard errors come [default: the scene's, else 8].
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_REPLICATES as u64 }>)]
     pub replicates: Option<u32>,
     /// Threads [default: all cores]. The results do not depend on it.
-    #[arg(long, value_name = "T")]
-    pub threads: Option<usize>,
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { render::MAX_THREADS as u64 }>)]
+    pub threads: Option<u32>,
     /// Not available yet.
     #[arg(long, value_name = "PERCENT", hide = true)]
     pub error: Option<String>,
@@ -193,6 +199,13 @@ fn warn(warnings: &[Diagnostic]) {
     for warning in warnings {
         say(&format!("warning: {warning}"));
     }
+}
+
+/// A whole number given on the command line; `LOW` and `HIGH` are for the message, and are enforced where the number is
+/// used. clap puts the option and the text before the message.
+fn whole<T: TryFrom<u64>, const LOW: u64, const HIGH: u64>(text: &str) -> Result<T, String> {
+    let value = text.parse::<u64>().ok().and_then(|n| T::try_from(n).ok());
+    value.ok_or_else(|| format!("required: a whole number from {LOW} to {HIGH}"))
 }
 
 /// A count given on the command line.

@@ -19,7 +19,7 @@ use crate::sequence::Sequence;
 use super::{RenderArgs, count, exit, fail, not_available, print, say, warn};
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
-const MAX_THREADS: usize = 1024;
+pub(super) const MAX_THREADS: u32 = 1024;
 
 /// Set by the first Ctrl-C; the second ends the process at once.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -151,7 +151,7 @@ fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Outcome> {
         return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_THREADS} threads")));
     }
     let threads = args.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build().map_err(|e| {
         Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started")
     })?;
     let bar = progress_bar(args.quiet, plan);

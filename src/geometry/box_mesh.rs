@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Mesh, MeshParts, Smoothing};
 use crate::error::{Diagnostic, Kind, Result};
 
-/// The closed axis-parallel box between two corners [m]: 12 triangles, normals outward, faces in the order
+/// The closed axis-parallel box between two corners (m): 12 triangles, normals outward, faces in the order
 /// -x, +x, -y, +y, -z, +z, two triangles each.
 ///
 /// # Errors

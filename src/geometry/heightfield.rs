@@ -9,13 +9,13 @@ use crate::error::{Diagnostic, Kind, Result};
 /// A plane wave `a sin(2 pi / l (x cos d + y sin d) + phase)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wave {
-    /// Amplitude a [m].
+    /// Amplitude a (m).
     pub amplitude_m: f64,
-    /// Wavelength l [m].
+    /// Wavelength l (m).
     pub wavelength_m: f64,
-    /// Direction d it runs in, from x towards y [degrees].
+    /// Direction d it runs in, from x towards y (degrees).
     pub direction_deg: f64,
-    /// Phase [degrees].
+    /// Phase (degrees).
     pub phase_deg: f64,
 }
 
@@ -43,11 +43,11 @@ pub enum Facing {
 /// A heightfield: `cells[0] x cells[1] x 2` triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heightfield {
-    /// Least x and y [m].
+    /// Least x and y (m).
     pub min: DVec2,
-    /// Greatest x and y [m].
+    /// Greatest x and y (m).
     pub max: DVec2,
-    /// Height of the reference plane [m].
+    /// Height of the reference plane (m).
     pub z_m: f64,
     /// Cells along x and y.
     pub cells: [u32; 2],
@@ -100,7 +100,7 @@ impl Heightfield {
         Ok(Mesh::new(parts, Smoothing::Given, false)?.0)
     }
 
-    /// Height over the reference plane [m] and its slope at (x, y) [m].
+    /// Height over the reference plane (m) and its slope at (x, y) (m).
     pub fn height_and_slope(&self, at: DVec2) -> (f64, DVec2) {
         match &self.formula {
             Formula::Waves(waves) => waves.iter().fold((0.0, DVec2::ZERO), |(h, s), w| {

@@ -11,7 +11,7 @@ use crate::error::{Diagnostic, Kind, Result};
 /// Samples a height image may have.
 pub const MAX_HEIGHT_SAMPLES: usize = 1 << 26;
 
-/// A grid of heights [m], rows from the far (greatest y) edge to the near one, as a picture is stored.
+/// A grid of heights (m), rows from the far (greatest y) edge to the near one, as a picture is stored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightImage {
     columns: usize,
@@ -20,7 +20,7 @@ pub struct HeightImage {
 }
 
 impl HeightImage {
-    /// Heights [m], row by row, the first row at the greatest y.
+    /// Heights (m), row by row, the first row at the greatest y.
     ///
     /// # Errors
     /// Fewer than 2 columns or rows, a count that does not match, a height that is not finite.
@@ -40,7 +40,7 @@ impl HeightImage {
         Ok(Self { columns, rows, heights_m })
     }
 
-    /// Reads a PNG of 8 or 16 bits: black is `low_m`, white `high_m` [m]; colours count by their luma.
+    /// Reads a PNG of 8 or 16 bits: black is `low_m`, white `high_m` (m); colours count by their luma.
     ///
     /// # Errors
     /// A file that cannot be read, is no PNG, or has more than [`MAX_HEIGHT_SAMPLES`] pixels.
@@ -79,7 +79,7 @@ impl HeightImage {
         [self.columns, self.rows]
     }
 
-    /// Height [m] at a fraction of the rectangle, (0, 0) at least x and y; bilinear between samples, which lie on the
+    /// Height (m) at a fraction of the rectangle, (0, 0) at least x and y; bilinear between samples, which lie on the
     /// rectangle's edges too.
     pub fn height_m(&self, at: DVec2) -> f64 {
         let x = at.x.clamp(0.0, 1.0) * (self.columns - 1) as f64;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Geometry, Mesh, Shape, SurfaceId};
 
 impl Geometry {
-    /// Whether `point` [m] is behind a surface, opposite to where the outward normal points. An open surface has
+    /// Whether `point` (m) is behind a surface, opposite to where the outward normal points. An open surface has
     /// nobody behind it. A closed mesh whose normals point inward has its outside behind it.
     pub fn is_behind(&self, point: DVec3, surface: SurfaceId) -> bool {
         if !self.is_closed(surface) {
@@ -45,7 +45,7 @@ fn winding_number(mesh: &Mesh, point: DVec3) -> f64 {
 }
 
 impl Geometry {
-    /// The surface on which a point [m] lies, to the rounding of its coordinates, if there is one.
+    /// The surface on which a point (m) lies, to the rounding of its coordinates, if there is one.
     ///
     /// Exhaustive over all faces: meant for emitters, once each.
     pub fn surface_at(&self, point: DVec3) -> Option<SurfaceId> {
@@ -66,7 +66,7 @@ impl Geometry {
     }
 }
 
-/// Distance of a point from a triangle [m]. (C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5.)
+/// Distance of a point from a triangle (m). (C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5.)
 fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);

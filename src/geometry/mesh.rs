@@ -23,7 +23,7 @@ pub enum Smoothing {
 /// What a mesh is made of, unchecked.
 #[derive(Debug, Clone, Default)]
 pub struct MeshParts {
-    /// Vertex positions [m].
+    /// Vertex positions (m).
     pub vertices: Vec<DVec3>,
     /// Vertex indices of each triangle, right-handed about the outward normal.
     pub triangles: Vec<[u32; 3]>,
@@ -78,7 +78,7 @@ impl Mesh {
         Ok((mesh, warnings))
     }
 
-    /// Vertices [m].
+    /// Vertices (m).
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
@@ -103,19 +103,19 @@ impl Mesh {
         !self.normal_indices.is_empty()
     }
 
-    /// Corners of a face [m].
+    /// Corners of a face (m).
     #[inline(always)]
     pub fn triangle(&self, face: usize) -> [DVec3; 3] {
         self.triangles[face].map(|i| self.vertices[i as usize])
     }
 
-    /// Area of a face [m2].
+    /// Area of a face (m2).
     pub fn face_area(&self, face: usize) -> f64 {
         let [a, b, c] = self.triangle(face);
         0.5 * (b - a).cross(c - a).length()
     }
 
-    /// Area [m2].
+    /// Area (m2).
     pub fn area(&self) -> f64 {
         (0..self.triangles.len()).map(|i| self.face_area(i)).sum()
     }

@@ -15,7 +15,7 @@ pub struct Topology {
     pub duplicates: Vec<(u32, u32)>,
     /// Edges that belong to one face only.
     pub open_edges: usize,
-    /// The first open edge: its face and its ends [m].
+    /// The first open edge: its face and its ends (m).
     pub first_open_edge: Option<(u32, [DVec3; 2])>,
     /// Edges of more than two faces.
     pub non_manifold_edges: usize,
@@ -25,7 +25,7 @@ pub struct Topology {
     pub inconsistent_edges: usize,
     /// A face at an inconsistent edge.
     pub first_inconsistent: Option<u32>,
-    /// Volume enclosed [m3]: negative where the normals point inward; of no meaning for an open mesh.
+    /// Volume enclosed (m3): negative where the normals point inward; of no meaning for an open mesh.
     pub signed_volume_m3: f64,
     triangles: usize,
 }

@@ -52,7 +52,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use bvh::Bounds;
 use wide::{Normalisation, WideTree};
 
-/// Largest coordinate [m] that is accepted: products of three still fit an f64 with room.
+/// Largest coordinate (m) that is accepted: products of three still fit an f64 with room.
 pub const MAX_COORDINATE_M: f64 = 1e30;
 
 /// Number of a surface in its scene, from 0.
@@ -71,9 +71,9 @@ pub struct Surface {
 /// Where a ray meets a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// Distance along the ray [m], never negative.
+    /// Distance along the ray (m), never negative.
     pub t: f64,
-    /// Bound of the rounding error of `t` [m].
+    /// Bound of the rounding error of `t` (m).
     pub t_bound: f64,
     /// The point, interpolated on the surface itself (not origin + t direction).
     pub position: DVec3,
@@ -182,7 +182,7 @@ impl Geometry {
         self.info.get(surface.0 as usize).is_some_and(|i| i.closed)
     }
 
-    /// Least and greatest corner of everything [m]; zeros for an empty scene.
+    /// Least and greatest corner of everything (m); zeros for an empty scene.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         self.bounds
     }

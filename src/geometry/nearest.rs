@@ -217,7 +217,7 @@ impl<const LENIENT: bool> Visitor for Search<'_, LENIENT> {
 }
 
 impl Geometry {
-    /// The nearest hit of a ray from `origin` [m] along the unit vector `direction`.
+    /// The nearest hit of a ray from `origin` (m) along the unit vector `direction`.
     ///
     /// `at` says where the photon is: primitives just met, the sides it left them on, the closed surfaces it is
     /// behind. Candidates that contradict it are the same crossing seen again, or the rounding of a silhouette; those

@@ -5,12 +5,12 @@ use glam::DVec2;
 use super::transform::check_point;
 use crate::error::{Diagnostic, Kind, Result};
 
-/// One octave: its share of the amplitude and the pitch of its lattice [m].
+/// One octave: its share of the amplitude and the pitch of its lattice (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Octave {
     /// Relative amplitude; the sum over octaves is scaled to the noise's peak.
     pub amplitude: f64,
-    /// Lattice pitch [m].
+    /// Lattice pitch (m).
     pub wavelength_m: f64,
 }
 
@@ -29,7 +29,7 @@ pub struct Noise {
 const MAX_OCTAVES: usize = 64;
 
 impl Noise {
-    /// A noise of these octaves whose amplitudes sum to `amplitude_m` [m].
+    /// A noise of these octaves whose amplitudes sum to `amplitude_m` (m).
     ///
     /// # Errors
     /// No octave or too many, amplitudes or wavelengths that are not positive and finite.
@@ -49,12 +49,12 @@ impl Noise {
         Ok(Self { seed, octaves, scale_m: amplitude_m / total })
     }
 
-    /// Shortest wavelength [m].
+    /// Shortest wavelength (m).
     pub(crate) fn shortest_wavelength_m(&self) -> f64 {
         self.octaves.iter().fold(f64::INFINITY, |m, o| m.min(o.wavelength_m))
     }
 
-    /// Height [m] and its slope at a point [m].
+    /// Height (m) and its slope at a point (m).
     pub fn height_and_slope(&self, at: DVec2) -> (f64, DVec2) {
         let mut height = 0.0;
         let mut slope = DVec2::ZERO;

@@ -22,7 +22,7 @@ pub struct Paraboloid {
 }
 
 impl Paraboloid {
-    /// Vertex [m], axis (towards the focus, any length), focal length [m] and rim radius [m].
+    /// Vertex (m), axis (towards the focus, any length), focal length (m) and rim radius (m).
     ///
     /// # Errors
     /// A length that is not positive, an axis without direction, coordinates out of range.
@@ -42,7 +42,7 @@ impl Paraboloid {
         Ok(Self { vertex, axis, focal_length, radius, x, y: axis.cross(x) })
     }
 
-    /// The vertex [m].
+    /// The vertex (m).
     pub fn vertex(&self) -> DVec3 {
         self.vertex
     }
@@ -52,22 +52,22 @@ impl Paraboloid {
         self.axis
     }
 
-    /// Distance from vertex to focus [m].
+    /// Distance from vertex to focus (m).
     pub fn focal_length(&self) -> f64 {
         self.focal_length
     }
 
-    /// Radius of the rim [m].
+    /// Radius of the rim (m).
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// The focus [m].
+    /// The focus (m).
     pub fn focus(&self) -> DVec3 {
         self.vertex + self.axis * self.focal_length
     }
 
-    /// Area [m2]: (8 pi f^2 / 3) ((1 + R^2 / 4 f^2)^(3/2) - 1).
+    /// Area (m2): (8 pi f^2 / 3) ((1 + R^2 / 4 f^2)^(3/2) - 1).
     pub fn area(&self) -> f64 {
         let f = self.focal_length;
         8.0 * std::f64::consts::PI / 3.0 * f * f * self.area_fraction(self.radius)
@@ -115,7 +115,7 @@ impl Paraboloid {
         self.vertex + self.x * p.x + self.y * p.y + self.axis * z
     }
 
-    /// Rounding bound [m] of a distance along this ray, where it is not grazing.
+    /// Rounding bound (m) of a distance along this ray, where it is not grazing.
     pub(crate) fn bound(&self, ray: &Ray) -> f64 {
         let size = ray.origin.abs().max_element().max(self.vertex.abs().max_element());
         GAMMA * (size + self.radius + self.focal_length)

@@ -14,7 +14,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// A rectangle from its (u = 0, v = 0) corner [m] and its edges [m].
+    /// A rectangle from its (u = 0, v = 0) corner (m) and its edges (m).
     ///
     /// # Errors
     /// Edges that are not finite, have no length, or are not perpendicular to 1e-9 of their lengths.
@@ -51,17 +51,17 @@ impl Rectangle {
         Ok(Self { corners, edge_u, edge_v })
     }
 
-    /// The (u = 0, v = 0) corner [m].
+    /// The (u = 0, v = 0) corner (m).
     pub fn corner(&self) -> DVec3 {
         self.corners[0]
     }
 
-    /// The edge along u [m].
+    /// The edge along u (m).
     pub fn edge_u(&self) -> DVec3 {
         self.edge_u
     }
 
-    /// The edge along v [m].
+    /// The edge along v (m).
     pub fn edge_v(&self) -> DVec3 {
         self.edge_v
     }
@@ -71,7 +71,7 @@ impl Rectangle {
         self.edge_u.normalize().cross(self.edge_v.normalize()).normalize()
     }
 
-    /// Area [m2].
+    /// Area (m2).
     pub fn area(&self) -> f64 {
         self.edge_u.length() * self.edge_v.length()
     }

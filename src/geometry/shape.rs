@@ -37,7 +37,7 @@ impl Shape {
         }
     }
 
-    /// Area [m2].
+    /// Area (m2).
     pub fn area(&self) -> f64 {
         match self {
             Self::Mesh(m) => m.area(),
@@ -47,7 +47,7 @@ impl Shape {
         }
     }
 
-    /// Area of every face [m2], by face number.
+    /// Area of every face (m2), by face number.
     pub fn face_areas(&self) -> Vec<f64> {
         match self {
             Self::Mesh(m) => (0..m.triangles().len()).map(|i| m.face_area(i)).collect(),
@@ -89,7 +89,7 @@ impl Shape {
         }
     }
 
-    /// Least and greatest corner of a face [m].
+    /// Least and greatest corner of a face (m).
     pub(crate) fn face_bounds(&self, face: usize) -> (DVec3, DVec3) {
         match self {
             Self::Mesh(m) => bounds_of(&m.triangle(face)),

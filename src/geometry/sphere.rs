@@ -25,7 +25,7 @@ pub(crate) struct Root {
 pub(super) const GAMMA: f64 = 16.0 * 0.5 * f64::EPSILON;
 
 impl Sphere {
-    /// A sphere of positive radius [m].
+    /// A sphere of positive radius (m).
     ///
     /// # Errors
     /// A radius that is not positive, or coordinates out of range.
@@ -38,17 +38,17 @@ impl Sphere {
         Ok(Self { centre, radius })
     }
 
-    /// The centre [m].
+    /// The centre (m).
     pub fn centre(&self) -> DVec3 {
         self.centre
     }
 
-    /// The radius [m].
+    /// The radius (m).
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Area [m2].
+    /// Area (m2).
     pub fn area(&self) -> f64 {
         4.0 * std::f64::consts::PI * self.radius * self.radius
     }

@@ -25,7 +25,7 @@ impl Transform {
         Self { scale: DVec3::ONE, rotation: DMat3::IDENTITY, translation: DVec3::ZERO }
     }
 
-    /// Positive scale factors, right-handed rotations [degrees] and a translation [m].
+    /// Positive scale factors, right-handed rotations (degrees) and a translation (m).
     ///
     /// # Errors
     /// A scale that is not positive (mirroring is not a movement: it would turn the surface inside out), or a number
@@ -46,7 +46,7 @@ impl Transform {
         Ok(Self { scale, rotation: about_z * about_y * about_x, translation: translation_m })
     }
 
-    /// A point, moved [m].
+    /// A point, moved (m).
     pub fn point(&self, p: DVec3) -> DVec3 {
         if *self == Self::identity() { p } else { self.vector(p) + self.translation }
     }

@@ -1,6 +1,6 @@
 //! Scenes: what is read from a scene file, checked once, and built for tracing.
 //!
-//! [`file`] reads the text into a [`description`]; [`build`] loads the files it names and makes a [`Scene`]: surfaces with
+//! [`mod@file`] reads the text into a [`description`]; [`build`] loads the files it names and makes a [`Scene`]: surfaces with
 //! what they are made of, emitters, receivers. After that nothing is checked again.
 
 pub mod build;

@@ -1,6 +1,6 @@
 //! One photon from emission to its end, and the ledger of every lumen.
 //!
-//! [`walk`] follows one photon; [`ledger`] counts where photons begin and end; [`census`] collects what a batch of photons
+//! [`walk()`] follows one photon; [`ledger`] counts where photons begin and end; [`census`] collects what a batch of photons
 //! did beside that: coordinates used, exceptions made; [`parallel`] runs ranges of photon indices over threads.
 
 pub mod census;

@@ -43,7 +43,7 @@ const ANGLE: Interval = Interval { low: -1e6, high: 1e6, words: "an angle from -
 pub fn read(path: impl AsRef<Path>) -> Result<Description, Vec<Diagnostic>> {
     let path = path.as_ref();
     let name = path.display().to_string();
-    let bytes = source::read_capped(path, source::SCENE_LIMIT_BYTES).map_err(|e| vec![e])?;
+    let bytes = source::read_capped(path, source::SCENE_LIMIT_BYTES).map_err(|e| vec![e.in_file(&name)])?;
     let text = std::str::from_utf8(&bytes).map_err(|e| vec![not_utf8(&bytes, e.valid_up_to(), &name)])?;
     let directory = path.parent().map(PathBuf::from).unwrap_or_default();
     let description = parse(text, &name, Base::Directory(directory))?;

@@ -54,6 +54,7 @@ pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
 /// toml's message is `what is wrong, expected this`.
 fn in_words(message: &str, excerpt: &str) -> (String, String) {
     let (wrong, expected) = match message.split_once(", expected ") {
+        Some((wrong, "nothing")) => (wrong, required_instead_of(wrong).to_string()),
         Some((wrong, expected)) => (wrong, expected.to_string()),
         None => (message, String::from("a TOML document")),
     };
@@ -62,6 +63,22 @@ fn in_words(message: &str, excerpt: &str) -> (String, String) {
         shown => format!("{wrong} (TOML), at `{}`", shown.escape_debug()),
     };
     (found, expected)
+}
+
+/// What is required where toml's parser expects "nothing", that is, where something stands too much: the rule that it
+/// breaks, since the removal of the excerpt alone is not always right.
+fn required_instead_of(wrong: &str) -> &'static str {
+    match wrong {
+        "extra `=`" => "one `=` between a key and its value",
+        "unexpected leading zero" => "a number without leading zeros",
+        "redundant numeric sign" | "unexpected sign" => {
+            "a number with at most one sign, before its first digit"
+        }
+        "integers with a radix cannot be signed" => "a number that begins with 0x, 0o or 0b and has no sign",
+        "redundant integer number prefix" => "at most one of 0x, 0o and 0b, before the digits",
+        "`_` may only go between digits" => "a digit before and after every `_`",
+        _ => "text as TOML 1.0 has it (https://toml.io)",
+    }
 }
 
 /// The first line of the same table with the same key as line `second`, or the first line with the same
