@@ -304,12 +304,11 @@ const FIRST_STAGE: u64 = 1 << 10;
 /// net of 2^m points, and an interrupted run falls back on the last. Later replicates count only as a whole.
 fn stages(plan: &Plan, replicate: u32) -> Vec<Range<u64>> {
     let n = plan.photons_per_replicate;
-    let mut end = if replicate == 0 { n.min(FIRST_STAGE) } else { n };
-    let mut stages = vec![0..end];
-    while end < n {
-        let next = n.min(2 * end);
-        stages.push(end..next);
-        end = next;
+    let (mut start, mut end) = (0, if replicate == 0 { n.min(FIRST_STAGE) } else { n });
+    let mut stages = Vec::new();
+    while start < n {
+        stages.push(start..end);
+        (start, end) = (end, n.min(2 * end));
     }
     stages
 }
