@@ -64,10 +64,11 @@ fn render(
     let one = |e: Diagnostic| vec![e];
     let (scene, run) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
-    let plan = plan(args, variant, &run).map_err(one)?;
+    let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons.map(|p| p.value));
+    let plan = plan(args, variant, &run, asked).map_err(one)?;
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
     make_directory(&args.output).map_err(one)?;
-    say_rounding(args, &plan);
+    say_rounding(asked, &plan);
     catch_interrupts();
     let outcome = traced(args, &scene, &plan).map_err(one)?;
     let directory = destination(&args.output, &outcome).map_err(one)?;
@@ -109,9 +110,13 @@ fn render(
 }
 
 /// The command line where it speaks, else the scene's [run], else the defaults.
-fn plan(args: &RenderArgs, variant: Option<&str>, run: &RunDescription) -> Result<Plan> {
-    let mut settings = Settings::default();
-    settings.photons = count("--photons", args.photons.as_ref())?.or(run.photons.map(|p| p.value));
+fn plan(
+    args: &RenderArgs,
+    variant: Option<&str>,
+    run: &RunDescription,
+    photons: Option<u64>,
+) -> Result<Plan> {
+    let mut settings = Settings { photons, ..Settings::default() };
     settings.seed = args.seed.or(run.seed.map(|p| p.value)).unwrap_or(settings.seed);
     let unknown = |option: &str, name: &str, known: Vec<&str>| {
         Diagnostic::new(Kind::Unknown, format!("{option} {name}"), format!("one of: {}", known.join(", ")))
@@ -133,8 +138,7 @@ fn plan(args: &RenderArgs, variant: Option<&str>, run: &RunDescription) -> Resul
     Plan::new(&settings)
 }
 
-fn say_rounding(args: &RenderArgs, plan: &Plan) {
-    let asked = args.photons.as_ref().and_then(|t| crate::scene::count::parse_count(t).ok());
+fn say_rounding(asked: Option<u64>, plan: &Plan) {
     if let Some(asked) = asked.filter(|n| *n != plan.photons()) {
         say(&format!(
             "caustix: {} photons instead of {}: {} replicates of equal size",

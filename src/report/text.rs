@@ -97,7 +97,7 @@ fn write_receiver(
         writeln!(
             out,
             "  error        a cell is off by {} % of the mean (root mean square)",
-            digits(100.0 * nrms)
+            rounded(100.0 * nrms, 3)
         )?;
     }
     if !files.is_empty() {
