@@ -63,7 +63,8 @@ impl Reusable {
     }
 }
 
-const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
+/// The number of 64-bit fractions.
+pub(super) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 /// d / width as a 64-bit fraction, d < width.
 #[inline]

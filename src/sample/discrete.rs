@@ -3,7 +3,7 @@
 //! Guide tables (Chen and Asau 1974) keep u monotone, so a net stays a net in the chosen event; an alias table would
 //! not. Division by an event's width is a multiplication by its stored reciprocal.
 
-use super::choose::{Reusable, integer_widths};
+use super::choose::{Reusable, TWO_TO_64, integer_widths};
 
 /// One event of positive probability.
 #[derive(Debug, Clone, Copy)]
@@ -26,8 +26,6 @@ pub struct Discrete {
     guide: Vec<u32>,
     shift: u32,
 }
-
-const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 impl Discrete {
     /// Events in proportion to these weights (non-negative, finite, fewer than 2^32); `None` where none is positive.

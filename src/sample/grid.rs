@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::cell::{Cell, Column, Polar, Row};
-use super::choose::Reusable;
+use super::choose::{Reusable, TWO_TO_64};
 use super::discrete::Discrete;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::sequence::to_unit_f64;
@@ -178,8 +178,6 @@ impl Grid {
         Some((i, j, s.min(row.width), (t / column.width).min(1.0)))
     }
 }
-
-const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 fn check(polar: &[f64], azimuth: &[f64], values: &[f64]) -> Result<()> {
     let rising = |a: &[f64]| a.windows(2).all(|w| w[0] < w[1]);

@@ -39,7 +39,7 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
             "an emitter off every surface: on one, it is on neither side",
         );
     }
-    let behind = behind(geometry, centre);
+    let behind = geometry.all_behind(centre);
     for &surface in &behind {
         if bsdfs[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {
             return fail(
@@ -49,7 +49,7 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
         }
     }
     for point in rim(emitter) {
-        if self::behind(geometry, point) != behind {
+        if geometry.all_behind(point) != behind {
             return fail(
                 format!("the beam of emitter \"{name}\" starting partly inside a closed surface"),
                 "a cross-section wholly on one side of every closed surface",
@@ -57,14 +57,6 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
         }
     }
     Ok(Whereabouts::start(behind))
-}
-
-/// The closed surfaces a point is behind.
-fn behind(geometry: &Geometry, point: DVec3) -> Vec<SurfaceId> {
-    (0..geometry.surfaces().len() as u32)
-        .map(SurfaceId)
-        .filter(|&s| geometry.is_closed(s) && geometry.is_behind(point, s))
-        .collect()
 }
 
 /// Points around the cross-section of a beam.
