@@ -93,8 +93,6 @@ fn what_is_not_built_yet_says_so_and_exits_2() {
         "render --error 1",
         "render --time 3",
         "render --resume",
-        "render --variant mc",
-        "render --variant qmc",
     ] {
         s.is_told(line, 2, &["not available yet"]);
     }

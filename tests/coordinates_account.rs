@@ -13,6 +13,7 @@ use caustix::emitter::{Emission, Emitter, Emitters, Isotropic, Photometric};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::photometry::lm63;
 use caustix::sample::coordinates::{Chooser, Coordinates, Purpose};
+use caustix::sample::method::Sampling;
 use caustix::scene::{Scene, SceneParts};
 use caustix::sequence::Points;
 use caustix::sequence::independent::IndependentPoints;
@@ -210,7 +211,8 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
             let drawn = check_photon(scene, &owen, i, reuse, &mut totals);
             histogram[(drawn as usize).min(LONGEST_DIMENSION)] += 1;
         }
-        let how = How { reuse, interrupt: &AtomicBool::new(false), progress: &|_| {} };
+        let how =
+            How { sampling: Sampling::Inverse, reuse, interrupt: &AtomicBool::new(false), progress: &|_| {} };
         let census = trace_range(scene, &owen, 0..photons, how, || Ignore).census;
         assert_eq!(census.drawn_for.iter().sum::<u64>(), totals.drawn, "{name}");
         assert_eq!(census.dimension_histogram, histogram, "{name}");

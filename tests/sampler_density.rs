@@ -11,6 +11,7 @@ mod support;
 use caustix::emitter::{Emitter, Emitters, Photometric};
 use caustix::photometry::{PhotometricType, Photometry, Web, lm63};
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::{Rejection, Sampling};
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::{Points, to_unit_f64};
 use glam::DVec3;
@@ -39,12 +40,23 @@ fn emitter(photometry: &Photometry) -> Photometric {
 
 /// (polar angle, azimuth) in degrees of directions that photons of this file start with.
 fn sampled_angles(photometry: &Photometry, density: &Density<'_>, seed: u64) -> Vec<(f64, f64)> {
+    angles_by(Sampling::Inverse, photometry, density, seed)
+}
+
+/// The same by another way of sampling tables.
+fn angles_by(
+    sampling: Sampling,
+    photometry: &Photometry,
+    density: &Density<'_>,
+    seed: u64,
+) -> Vec<(f64, f64)> {
     let emitters = Emitters::new(vec![Emitter::Photometric(Box::new(emitter(photometry)))]).unwrap();
     let points = IndependentPoints::new(seed, 0);
     let frame = Luminaire::new(AIM, UP);
-    (0..SAMPLES)
-        .map(|i| {
-            let (_, emission) = emitters.emit(&mut Coordinates::new(&points, i, true));
+    (0..)
+        .filter_map(|i| emitters.emit_by(sampling, &mut Coordinates::new(&points, i, true)))
+        .take(SAMPLES as usize)
+        .map(|(_, emission)| {
             let angles = frame.angles_deg(photometry.web.photometric_type, emission.direction);
             density.polar_and_azimuth(angles)
         })
@@ -150,6 +162,22 @@ fn check_invert(path: &Path) {
 #[test]
 fn own_files_are_sampled_with_their_density() {
     check_density(&data::own_files());
+}
+
+#[test]
+fn own_files_are_sampled_with_their_density_by_every_rejection() {
+    let files = data::own_files();
+    let level = sidak(FAMILY, files.len() * TESTS_A_FILE * Rejection::ALL.len());
+    for (k, path) in files.iter().enumerate() {
+        let photometry = lm63::read(path).unwrap();
+        let density = Density::new(&photometry.web);
+        for rejection in Rejection::ALL {
+            let samples = angles_by(Sampling::Rejection(rejection), &photometry, &density, 100 + k as u64);
+            let p = p_values(&samples, &density);
+            println!("{} {}: {p:.4?}", path.display(), rejection.name());
+            assert!(p.into_iter().all(|p| p > level), "{} {}: {p:?}", path.display(), rejection.name());
+        }
+    }
 }
 
 #[test]

@@ -72,7 +72,8 @@ pub struct RenderArgs {
     /// Photons in all, like 4_456_448, 4.5e6 or 2^22 [default: the scene's, else 2^22].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub photons: Option<String>,
-    /// Algorithm variant: qmc-inverse-reuse (default) or qmc-inverse.
+    /// Algorithm variant: mc, qmc, qmc-inverse or qmc-inverse-reuse (default); mc and qmc reject inside
+    /// the table's cell; mc:table against its maximum, mc:next-point the same with retries from the next point.
     #[arg(long, value_name = "V")]
     pub variant: Option<String>,
     /// Point sequence: sobol-owen (default), sobol or independent.

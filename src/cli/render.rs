@@ -11,7 +11,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::image::atomic::write_atomically;
 use crate::report::statistics::ReceiverStatistics;
 use crate::report::{Report, maps, text};
-use crate::run::{Outcome, Plan, Settings, StoppedBy, Variant, trace};
+use crate::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace};
 use crate::scene::description::{Description, RunDescription};
 use crate::scene::{Scene, build, file};
 use crate::sequence::Sequence;
@@ -41,12 +41,8 @@ pub fn run(args: &RenderArgs) -> u8 {
     if let Some((flag, _)) = later.iter().find(|(_, asked)| *asked) {
         return not_available(flag);
     }
-    let variant = match args.variant.as_deref() {
-        Some(name @ ("mc" | "qmc")) => return not_available(&format!("--variant {name}")),
-        name => name,
-    };
     let started = Instant::now();
-    match render(args, variant, started) {
+    match render(args, started) {
         Ok(code) => code,
         Err(errors) if errors.iter().any(|e| e.kind() == Kind::Interrupted) => {
             let _wrong = fail(&errors);
@@ -56,16 +52,12 @@ pub fn run(args: &RenderArgs) -> u8 {
     }
 }
 
-fn render(
-    args: &RenderArgs,
-    variant: Option<&str>,
-    started: Instant,
-) -> std::result::Result<u8, Vec<Diagnostic>> {
+fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Diagnostic>> {
     let one = |e: Diagnostic| vec![e];
     let (scene, run) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
     let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons.map(|p| p.value));
-    let plan = plan(args, variant, &run, asked).map_err(one)?;
+    let plan = plan(args, &run, asked).map_err(one)?;
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
     make_directory(&args.output).map_err(one)?;
     say_rounding(asked, &plan);
@@ -110,30 +102,21 @@ fn render(
 }
 
 /// The command line where it speaks, else the scene's [run], else the defaults.
-fn plan(
-    args: &RenderArgs,
-    variant: Option<&str>,
-    run: &RunDescription,
-    photons: Option<u64>,
-) -> Result<Plan> {
+fn plan(args: &RenderArgs, run: &RunDescription, photons: Option<u64>) -> Result<Plan> {
     let mut settings = Settings { photons, ..Settings::default() };
     settings.seed = args.seed.or(run.seed.map(|p| p.value)).unwrap_or(settings.seed);
-    let unknown = |option: &str, name: &str, known: Vec<&str>| {
-        Diagnostic::new(Kind::Unknown, format!("{option} {name}"), format!("one of: {}", known.join(", ")))
-    };
-    if let Some(name) = variant {
-        let names = || Variant::ALL.iter().map(|v| v.name()).collect();
-        settings.variant = Variant::ALL
-            .into_iter()
-            .find(|v| v.name() == name)
-            .ok_or_else(|| unknown("--variant", name, names()))?;
+    if let Some(name) = args.variant.as_deref() {
+        settings.algorithm = Algorithm::parse(name)?;
     }
     if let Some(name) = args.sequence.as_deref() {
-        let names = || Sequence::ALL.iter().map(|s| s.name()).collect();
-        settings.sequence = Sequence::from_name(name).ok_or_else(|| unknown("--sequence", name, names()))?;
+        settings.algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {
+            let names: Vec<_> = Sequence::ALL.iter().map(|s| s.name()).collect();
+            let required = format!("one of: {}", names.join(", "));
+            Diagnostic::new(Kind::Unknown, format!("--sequence {name}"), required)
+        })?;
     }
     // A scene's replicates yield to a sequence that can have only one; the command line's do not.
-    let of_scene = run.replicates.map(|p| p.value).filter(|_| settings.sequence.is_randomised());
+    let of_scene = run.replicates.map(|p| p.value).filter(|_| settings.algorithm.sequence.is_randomised());
     settings.replicates = args.replicates.or(of_scene);
     Plan::new(&settings)
 }

@@ -16,6 +16,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::discrete::Discrete;
+use crate::sample::method::Sampling;
 use crate::sequence::Points;
 
 pub use collimated::Collimated;
@@ -59,6 +60,35 @@ impl Emitter {
             Self::Photometric(e) => e.emit(u, coordinates),
             Self::Isotropic(e) => e.emit(u, coordinates),
             Self::Collimated(e) => e.emit(u, coordinates),
+        }
+    }
+
+    /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.
+    #[inline]
+    pub fn emit_by<P: Points>(
+        &self,
+        sampling: Sampling,
+        u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+    ) -> Option<Emission> {
+        match (self, sampling) {
+            (Self::Photometric(e), Sampling::Rejection(rejection)) => {
+                e.emit_by_rejection(u, coordinates, rejection)
+            }
+            _ => Some(self.emit(u, coordinates)),
+        }
+    }
+
+    /// A photon's start by a map that shares nothing with [`Self::emit`] where there is a table, and its weight (1 on
+    /// average): for references.
+    pub fn emit_weighted<P: Points>(
+        &self,
+        u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+    ) -> (Emission, f64) {
+        match self {
+            Self::Photometric(e) => e.emit_weighted(u, coordinates),
+            _ => (self.emit(u, coordinates), 1.0),
         }
     }
 
@@ -122,6 +152,26 @@ impl Emitters {
         let mut u = coordinates.draw_reusable(Purpose::Emission);
         let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
         (which, self.emitters[which].emit(u, coordinates))
+    }
+
+    /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.
+    #[inline]
+    pub fn emit_by<P: Points>(
+        &self,
+        sampling: Sampling,
+        coordinates: &mut Coordinates<'_, P>,
+    ) -> Option<(usize, Emission)> {
+        let mut u = coordinates.draw_reusable(Purpose::Emission);
+        let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
+        Some((which, self.emitters[which].emit_by(sampling, u, coordinates)?))
+    }
+
+    /// Starts a weighted photon: [`Emitter::emit_weighted`] of an emitter chosen by flux.
+    pub fn emit_weighted<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission, f64) {
+        let mut u = coordinates.draw_reusable(Purpose::Emission);
+        let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
+        let (emission, weight) = self.emitters[which].emit_weighted(u, coordinates);
+        (which, emission, weight)
     }
 }
 

@@ -21,6 +21,7 @@ use crate::photometry::web::PhotometricType;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::grid::Grid;
+use crate::sample::method::Rejection;
 use crate::sequence::{Points, to_unit_f64};
 
 /// A photometric point emitter.
@@ -113,5 +114,30 @@ impl Photometric {
         let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
         let point = self.grid.place(cell, u_theta, u_phi);
         Emission { origin: self.position, direction: self.axes * point.direction }
+    }
+
+    /// A photon's start by rejection; `None` where this point of the sequence gives none.
+    pub fn emit_by_rejection<P: Points>(
+        &self,
+        u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+        rejection: Rejection,
+    ) -> Option<Emission> {
+        let point = self.grid.reject(u, coordinates, rejection)?;
+        Some(Emission { origin: self.position, direction: self.axes * point.direction })
+    }
+
+    /// A photon's start with a direction uniform in solid angle over the range of the table, and the weight (1 on average)
+    /// that gives it the table's intensity. Shares no table of cells and no equation with [`Self::emit`].
+    pub fn emit_weighted<P: Points>(
+        &self,
+        u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+    ) -> (Emission, f64) {
+        let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
+        let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
+        let point = self.grid.uniform(u_theta, u_phi);
+        let weight = self.grid.value(point.theta, point.phi) * self.grid.solid_angle() / self.grid.integral();
+        (Emission { origin: self.position, direction: self.axes * point.direction }, weight)
     }
 }

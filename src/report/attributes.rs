@@ -49,8 +49,12 @@ pub fn attributes(
             Cells::Faces { .. } => "face number = row * width + column; NaN beyond the last face",
         },
     );
-    text("caustix.variant", outcome.plan.variant.name());
-    text("caustix.sequence", outcome.plan.sequence.name());
+    let algorithm = outcome.plan.algorithm;
+    text("caustix.variant", algorithm.variant.name());
+    if algorithm.variant.rejects() {
+        text("caustix.rejection", algorithm.rejection.name());
+    }
+    text("caustix.sequence", algorithm.sequence.name());
     text("caustix.seed", &outcome.plan.seed.to_string());
     text("caustix.photons", &outcome.photons.to_string());
     text("caustix.replicates", &outcome.replicates.to_string());

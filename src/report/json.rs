@@ -21,6 +21,9 @@ pub struct Report {
     pub variant: &'static str,
     /// Point sequence.
     pub sequence: &'static str,
+    /// How a variant that rejects does it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rejection: Option<&'static str>,
     /// Seed.
     pub seed: u64,
     /// Photons that the results stand for.
@@ -174,6 +177,7 @@ impl Report {
         };
         let error = |e: crate::run::Estimate| e.standard_error.unwrap_or(0.0);
         let photons = outcome.photons as f64;
+        let rejects = outcome.plan.algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
             scene: SceneReport {
@@ -181,8 +185,9 @@ impl Report {
                 sha256: scene.identity.sha256.clone(),
                 files: scene.identity.files.iter().cloned().collect(),
             },
-            variant: outcome.plan.variant.name(),
-            sequence: outcome.plan.sequence.name(),
+            variant: outcome.plan.algorithm.variant.name(),
+            sequence: outcome.plan.algorithm.sequence.name(),
+            rejection: rejects.then(|| outcome.plan.algorithm.rejection.name()),
             seed: outcome.plan.seed,
             photons: outcome.photons,
             photons_planned: outcome.plan.photons(),
@@ -262,7 +267,7 @@ impl Report {
 
 /// Why a run has no standard error, where it has none.
 pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
-    match (outcome.replicates, outcome.plan.sequence.is_randomised()) {
+    match (outcome.replicates, outcome.plan.algorithm.sequence.is_randomised()) {
         (2.., _) => None,
         (_, false) => {
             Some("this sequence has no seed: there is one replicate, and one set of points has no spread")

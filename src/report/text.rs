@@ -38,8 +38,8 @@ fn write_all(
         grouped(outcome.photons),
         outcome.replicates,
         grouped(outcome.photons / u64::from(outcome.replicates.max(1))),
-        plan.variant.name(),
-        plan.sequence.name(),
+        plan.algorithm.name(),
+        plan.algorithm.sequence.name(),
         plan.seed
     )?;
     if outcome.stopped_by == StoppedBy::Interrupt {

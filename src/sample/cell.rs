@@ -81,6 +81,16 @@ impl Row {
         }
     }
 
+    /// sin theta1.
+    pub(super) fn sin(&self) -> f64 {
+        self.sin
+    }
+
+    /// cos theta1.
+    pub(super) fn cos(&self) -> f64 {
+        self.cos
+    }
+
     /// F(s) for the edge sum a and the slope (b - a)/dt, and the trigonometry that it needed.
     #[inline]
     fn mass_to(&self, a: f64, slope: f64, s: f64) -> (f64, InCell) {

@@ -23,17 +23,20 @@ pub enum Purpose {
     Event,
     /// A scattered direction.
     Scatter,
+    /// Whether a proposed direction is accepted: rejection only.
+    Acceptance,
 }
 
 impl Purpose {
     /// Every purpose, in the order of the counters.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Emission,
         Self::EmissionTheta,
         Self::EmissionPhi,
         Self::BeamPosition,
         Self::Event,
         Self::Scatter,
+        Self::Acceptance,
     ];
 
     /// The label in reports.
@@ -45,6 +48,7 @@ impl Purpose {
             Self::BeamPosition => "beam position",
             Self::Event => "event",
             Self::Scatter => "scatter",
+            Self::Acceptance => "acceptance",
         }
     }
 }

@@ -93,6 +93,24 @@ impl Grid {
         &self.choice
     }
 
+    /// A chosen cell with its row and column.
+    pub(super) fn cell(&self, cell: usize) -> (&Cell, &Row, &Column) {
+        let cell = &self.cells[cell];
+        (cell, &self.rows[cell.row as usize], &self.columns[cell.column as usize])
+    }
+
+    /// The largest value at a node.
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+
+    /// First and last polar angle, first and last azimuth, in radians.
+    pub fn range(&self) -> ([f64; 2], [f64; 2]) {
+        let (first, last) = (&self.rows[0], &self.rows[self.rows.len() - 1]);
+        let (left, right) = (&self.columns[0], &self.columns[self.columns.len() - 1]);
+        ([first.theta, (last.theta + last.width).min(PI)], [left.phi, right.phi + right.width])
+    }
+
     /// The point of a chosen cell for the continuous coordinates of theta and phi.
     #[inline]
     pub fn place(&self, cell: usize, u_theta: f64, u_phi: f64) -> GridPoint {

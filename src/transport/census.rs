@@ -49,6 +49,14 @@ impl Census {
         }
     }
 
+    /// Counts the coordinates of a point that gave no photon: they are part of what the photons cost.
+    #[inline]
+    pub fn count_rejected(&mut self, drawn_for: &[u32; Purpose::ALL.len()]) {
+        for (sum, n) in self.drawn_for.iter_mut().zip(drawn_for) {
+            *sum += u64::from(*n);
+        }
+    }
+
     /// Photons counted.
     pub fn photons(&self) -> u64 {
         self.dimension_histogram.iter().sum()
@@ -81,8 +89,8 @@ mod tests {
     #[test]
     fn mean_and_maximum_come_from_all_photons_even_beyond_the_histogram() {
         let mut census = Census::default();
-        census.count(3, &[1, 0, 1, 0, 1, 0]);
-        census.count(101, &[1, 0, 1, 0, 49, 50]);
+        census.count(3, &[1, 0, 1, 0, 1, 0, 0]);
+        census.count(101, &[1, 0, 1, 0, 49, 50, 0]);
         assert_eq!((census.photons(), census.dimension_max, census.dimension_mean()), (2, 101, 52.0));
         let mut twice = census.clone();
         twice.merge(&census);

@@ -1,8 +1,10 @@
 //! One photon from emission to its end, and the ledger of every lumen.
 //!
 //! [`walk()`] follows one photon; [`ledger`] counts where photons begin and end; [`census`] collects what a batch of photons
-//! did beside that: coordinates used, exceptions made; [`parallel`] runs ranges of photon indices over threads.
+//! did beside that: coordinates used, exceptions made; [`parallel`] runs ranges of photon indices over threads;
+//! [`attempts`] counts the points that photons by rejection take.
 
+pub mod attempts;
 pub mod census;
 pub mod ledger;
 pub mod parallel;

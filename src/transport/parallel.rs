@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use crate::sample::coordinates::Coordinates;
+use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::Points;
 
@@ -55,6 +56,8 @@ impl Traced {
 pub struct How<'a> {
     /// Renormalisation on (METHOD 2).
     pub reuse: bool,
+    /// How tables are sampled.
+    pub sampling: Sampling,
     /// Set from outside to stop; looked at before every photon, because some take 100,000 events.
     pub interrupt: &'a AtomicBool,
     /// Told the number of photons after each batch.
@@ -132,7 +135,10 @@ fn trace_batch<P: Points, S: Sink>(
             return;
         }
         let mut coordinates = Coordinates::new(points, index, how.reuse);
-        let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+        let Some((emitter, emission)) = scene.emitters.emit_by(how.sampling, &mut coordinates) else {
+            traced.census.count_rejected(coordinates.drawn_for());
+            continue;
+        };
         traced.ledger.begin(emitter);
         let exceptions = &mut traced.census.exceptions;
         let end = walk(scene, emission, scene.start(emitter), &mut coordinates, sink, exceptions);

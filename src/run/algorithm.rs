@@ -1,0 +1,180 @@
+//! The algorithms that can be compared: the paper's variants and what may be changed about them.
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::sample::method::{Rejection, Sampling};
+use crate::sequence::Sequence;
+
+/// The algorithm variants; the paper's names, cumulative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variant {
+    /// Independent points and rejection.
+    Mc,
+    /// Sobol' points and rejection.
+    Qmc,
+    /// Sobol' points and inverse functions; every choice draws its own coordinate.
+    QmcInverse,
+    /// The same with renormalisation: discrete events share a coordinate. The default.
+    QmcInverseReuse,
+}
+
+impl Variant {
+    /// Every variant, in the paper's order.
+    pub const ALL: [Self; 4] = [Self::Mc, Self::Qmc, Self::QmcInverse, Self::QmcInverseReuse];
+
+    /// The name in commands and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mc => "mc",
+            Self::Qmc => "qmc",
+            Self::QmcInverse => "qmc-inverse",
+            Self::QmcInverseReuse => "qmc-inverse-reuse",
+        }
+    }
+
+    /// The variant of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|v| v.name() == name)
+    }
+
+    /// Whether discrete events share a coordinate (METHOD 2).
+    pub const fn reuses(self) -> bool {
+        matches!(self, Self::QmcInverseReuse)
+    }
+
+    /// Whether tables are sampled by rejection.
+    pub const fn rejects(self) -> bool {
+        matches!(self, Self::Mc | Self::Qmc)
+    }
+
+    /// The sequence it runs on where none is named.
+    pub const fn sequence(self) -> Sequence {
+        match self {
+            Self::Mc => Sequence::Independent,
+            Self::Qmc | Self::QmcInverse | Self::QmcInverseReuse => Sequence::SobolOwen,
+        }
+    }
+}
+
+/// A variant with everything about it that can be chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Algorithm {
+    /// The variant.
+    pub variant: Variant,
+    /// Point sequence.
+    pub sequence: Sequence,
+    /// How variants that reject do it; without effect on the others.
+    pub rejection: Rejection,
+}
+
+impl From<Variant> for Algorithm {
+    fn from(variant: Variant) -> Self {
+        Self { variant, sequence: variant.sequence(), rejection: Rejection::default() }
+    }
+}
+
+impl Algorithm {
+    /// What a variant's name with qualifiers says: `qmc`, `qmc:table`, `qmc:next-point`, `qmc-inverse:halton`.
+    /// Qualifiers are a sequence and a way of rejection, in any order.
+    ///
+    /// # Errors
+    /// An unknown name, and a qualifier of rejection on a variant that rejects nothing.
+    pub fn parse(text: &str) -> Result<Self> {
+        let mut words = text.split(':');
+        let name = words.next().unwrap_or_default();
+        let unknown = |word: &str, known: Vec<&str>| {
+            let found =
+                if word == text { format!("variant {word}") } else { format!("{word} in variant {text}") };
+            Diagnostic::new(Kind::Unknown, found, format!("one of: {}", known.join(", ")))
+        };
+        let mut algorithm = Self::from(
+            Variant::from_name(name)
+                .ok_or_else(|| unknown(name, Variant::ALL.iter().map(|v| v.name()).collect()))?,
+        );
+        for word in words {
+            let rejection = Rejection::ALL.into_iter().find(|r| r.name() == word);
+            if rejection.is_some() && !algorithm.variant.rejects() {
+                return Err(Diagnostic::new(
+                    Kind::Range,
+                    format!("{word} in variant {text}"),
+                    "a variant that rejects, mc or qmc: this one samples by inverse functions",
+                ));
+            }
+            match (rejection, Sequence::from_name(word)) {
+                (Some(rejection), _) => algorithm.rejection = rejection,
+                (_, Some(sequence)) => algorithm.sequence = sequence,
+                _ => {
+                    let rejections = Rejection::ALL.iter().map(|r| r.name());
+                    return Err(unknown(
+                        word,
+                        rejections.chain(Sequence::ALL.iter().map(|s| s.name())).collect(),
+                    ));
+                }
+            }
+        }
+        Ok(algorithm)
+    }
+
+    /// The name that [`Self::parse`] takes back: the variant, and what differs from its defaults.
+    pub fn name(&self) -> String {
+        let default = Self::from(self.variant);
+        let mut name = self.variant.name().to_string();
+        let mut add = |differs: bool, word: &str| {
+            if differs {
+                name.push(':');
+                name.push_str(word);
+            }
+        };
+        add(self.rejection != default.rejection, self.rejection.name());
+        add(self.sequence != default.sequence, self.sequence.name());
+        name
+    }
+
+    /// What it does, in words: sequence, way of sampling, coordinates.
+    pub fn description(&self) -> String {
+        let sampling = match self.sampling() {
+            Sampling::Inverse => "inverse functions",
+            Sampling::Rejection(rejection) => rejection.description(),
+        };
+        let coordinates = if self.variant.reuses() { "; events share a coordinate" } else { "" };
+        format!("{}; {sampling}{coordinates}", self.sequence.name())
+    }
+
+    /// How tables are sampled.
+    pub fn sampling(&self) -> Sampling {
+        if self.variant.rejects() { Sampling::Rejection(self.rejection) } else { Sampling::Inverse }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_round_trip() {
+        for name in [
+            "mc",
+            "qmc",
+            "qmc-inverse",
+            "qmc-inverse-reuse",
+            "qmc:table",
+            "mc:next-point",
+            "qmc:next-point:sobol",
+        ] {
+            assert_eq!(Algorithm::parse(name).unwrap().name(), name);
+        }
+        assert_eq!(Algorithm::parse("qmc:cell:sobol-owen").unwrap().name(), "qmc");
+        assert_eq!(Algorithm::parse("mc").unwrap().sequence, Sequence::Independent);
+    }
+
+    #[test]
+    fn wrong_names_are_refused() {
+        for (name, needle) in [
+            ("qcm", "variant qcm"),
+            ("", "variant "),
+            ("qmc:haltom", "haltom in variant qmc:haltom"),
+            ("qmc-inverse:table", "table in variant qmc-inverse:table"),
+        ] {
+            assert!(Algorithm::parse(name).unwrap_err().found().starts_with(needle), "{name}");
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! One point set of one algorithm, traced range by range.
+
+use std::sync::atomic::AtomicBool;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::sample::method::Sampling;
+use crate::scene::Scene;
+use crate::sequence::independent::IndependentPoints;
+use crate::sequence::owen::OwenPoints;
+use crate::sequence::sobol::SobolPoints;
+use crate::sequence::{Points, Sequence};
+use crate::tally::Receivers;
+use crate::transport::attempts::advance;
+use crate::transport::parallel::{How, Traced, trace_range};
+
+use super::algorithm::Algorithm;
+
+/// What is done with the points of a sequence: the one place where a sequence's name becomes a type, so that the walk is
+/// compiled for it.
+pub trait UsePoints {
+    /// What comes of it.
+    type Output;
+    /// Does it.
+    fn with<P: Points>(self, points: &P) -> Self::Output;
+}
+
+/// A set of points: a sequence under one randomisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PointSet {
+    /// The sequence.
+    pub sequence: Sequence,
+    /// Seed of its randomisation.
+    pub seed: u64,
+    /// Which of the independent randomisations under that seed.
+    pub replicate: u32,
+    /// Number of points, which some sequences must know.
+    pub number: u64,
+}
+
+impl PointSet {
+    /// Hands the points over.
+    ///
+    /// # Errors
+    /// A sequence that cannot have this many points.
+    pub fn provide<U: UsePoints>(&self, user: U) -> Result<U::Output> {
+        Ok(match self.sequence {
+            Sequence::Independent => user.with(&IndependentPoints::new(self.seed, self.replicate)),
+            Sequence::Sobol => user.with(&SobolPoints::new()),
+            Sequence::SobolOwen => user.with(&OwenPoints::new(self.seed, self.replicate)),
+        })
+    }
+}
+
+/// Follows a point set through a scene; each call goes on where the last one ended.
+#[derive(Debug, Clone, Copy)]
+pub struct Tracer<'s> {
+    scene: &'s Scene,
+    algorithm: Algorithm,
+    points: PointSet,
+    /// Photons traced so far.
+    photons: u64,
+    /// Points used so far: more than photons where rejected points give none.
+    attempts: u64,
+}
+
+impl<'s> Tracer<'s> {
+    /// At the first of `number` points.
+    pub fn new(scene: &'s Scene, algorithm: Algorithm, seed: u64, replicate: u32, number: u64) -> Self {
+        let points = PointSet { sequence: algorithm.sequence, seed, replicate, number };
+        Self { scene, algorithm, points, photons: 0, attempts: 0 }
+    }
+
+    /// Traces up to photon number `until`.
+    ///
+    /// # Errors
+    /// A sequence that cannot have this many points, and a ledger that does not balance (a defect of the program).
+    pub fn trace(
+        &mut self,
+        until: u64,
+        receivers: &Receivers<'_>,
+        interrupt: &AtomicBool,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Result<Traced> {
+        let how = How {
+            reuse: self.algorithm.variant.reuses(),
+            sampling: self.algorithm.sampling(),
+            interrupt,
+            progress,
+        };
+        let wanted = until.saturating_sub(self.photons);
+        let stage = Stage { scene: self.scene, how, receivers, attempts: self.attempts, wanted };
+        let (traced, attempts) = self.points.provide(stage)?;
+        check_balance(&traced)?;
+        (self.photons, self.attempts) = (until, attempts);
+        Ok(traced)
+    }
+}
+
+struct Stage<'a, 's> {
+    scene: &'s Scene,
+    how: How<'a>,
+    receivers: &'a Receivers<'s>,
+    attempts: u64,
+    wanted: u64,
+}
+
+impl UsePoints for Stage<'_, '_> {
+    type Output = (Traced, u64);
+
+    fn with<P: Points>(self, points: &P) -> Self::Output {
+        let Self { scene, how, receivers, attempts, wanted } = self;
+        let end = match how.sampling {
+            s if s.skips_points() => advance(scene, points, &how, attempts, wanted),
+            Sampling::Inverse | Sampling::Rejection(_) => attempts + wanted,
+        };
+        (trace_range(scene, points, attempts..end, how, || receivers.sink()), end)
+    }
+}
+
+fn check_balance(traced: &Traced) -> Result<()> {
+    let ledger = &traced.ledger;
+    if ledger.is_balanced() {
+        return Ok(());
+    }
+    Err(Diagnostic::new(
+        Kind::Geometry,
+        format!("{} photons begun, {} ended", ledger.total_emitted(), ledger.total_ended()),
+        "every photon to end exactly once: this is a defect of caustix, please report it with the scene",
+    ))
+}
