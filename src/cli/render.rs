@@ -106,7 +106,8 @@ fn plan(args: &RenderArgs, run: &RunDescription, photons: Option<u64>) -> Result
     let mut settings = Settings { photons, ..Settings::default() };
     settings.seed = args.seed.or(run.seed.map(|p| p.value)).unwrap_or(settings.seed);
     if let Some(name) = args.variant.as_deref() {
-        settings.algorithm = Algorithm::parse(name)?;
+        settings.algorithm = Algorithm::parse(name)
+            .map_err(|e| Diagnostic::new(e.kind(), format!("--{}", e.found()), e.required().to_string()))?;
     }
     if let Some(name) = args.sequence.as_deref() {
         settings.algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {

@@ -92,6 +92,13 @@ impl Emitter {
         }
     }
 
+    /// Continuous coordinates of an emission: all of these emit from two.
+    pub const fn continuous_coordinates(&self) -> f64 {
+        match self {
+            Self::Photometric(_) | Self::Isotropic(_) | Self::Collimated(_) => 2.0,
+        }
+    }
+
     /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section.
     pub fn centre(&self) -> DVec3 {
         match self {

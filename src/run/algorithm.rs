@@ -83,7 +83,7 @@ impl Algorithm {
         let name = words.next().unwrap_or_default();
         let unknown = |word: &str, known: Vec<&str>| {
             let found =
-                if word == text { format!("variant {word}") } else { format!("{word} in variant {text}") };
+                if word == text { format!("variant {word}") } else { format!("variant {text}: {word}") };
             Diagnostic::new(Kind::Unknown, found, format!("one of: {}", known.join(", ")))
         };
         let mut algorithm = Self::from(
@@ -95,7 +95,7 @@ impl Algorithm {
             if rejection.is_some() && !algorithm.variant.rejects() {
                 return Err(Diagnostic::new(
                     Kind::Range,
-                    format!("{word} in variant {text}"),
+                    format!("variant {text}: {word}"),
                     "a variant that rejects, mc or qmc: this one samples by inverse functions",
                 ));
             }
@@ -171,8 +171,8 @@ mod tests {
         for (name, needle) in [
             ("qcm", "variant qcm"),
             ("", "variant "),
-            ("qmc:haltom", "haltom in variant qmc:haltom"),
-            ("qmc-inverse:table", "table in variant qmc-inverse:table"),
+            ("qmc:haltom", "variant qmc:haltom: haltom"),
+            ("qmc-inverse:table", "variant qmc-inverse:table: table"),
         ] {
             assert!(Algorithm::parse(name).unwrap_err().found().starts_with(needle), "{name}");
         }

@@ -99,6 +99,11 @@ impl Grid {
         (cell, &self.rows[cell.row as usize], &self.columns[cell.column as usize])
     }
 
+    /// Cells of positive flux.
+    pub(super) fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+
     /// The largest value at a node.
     pub fn largest(&self) -> f64 {
         self.largest

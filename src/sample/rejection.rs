@@ -129,6 +129,20 @@ impl Grid {
         (libm::cos(low) - libm::cos(high)) * (phi2 - phi1)
     }
 
+    /// Proposals per accepted direction of [`Rejection::Cell`]: the mean over cells, by flux, of largest corner x solid
+    /// angle / flux.
+    pub fn proposals_of_cells(&self) -> f64 {
+        let mut sum = 0.0;
+        let mut flux = 0.0;
+        for index in 0..self.cell_count() {
+            let (cell, row, column) = self.cell(index);
+            let largest = cell.corners.iter().copied().fold(0.0, f64::max);
+            sum += largest * row.cap() * column.width;
+            flux += cell.flux(column);
+        }
+        sum / flux
+    }
+
     /// Proposals per accepted direction of [`Rejection::Table`].
     pub fn proposals_of_table(&self) -> f64 {
         self.largest() * self.solid_angle() / self.integral()

@@ -7,4 +7,4 @@ pub mod counts;
 pub mod receiver;
 
 pub use counts::{Counts, Moments};
-pub use receiver::{ReceiverSink, Receivers};
+pub use receiver::{FixedPointSink, ReceiverSink, Receivers};

@@ -7,6 +7,7 @@
 use crate::geometry::{Geometry, Hit};
 use crate::scene::description::{ReceiverEvents, ReceiverSide};
 use crate::scene::receiver::{Cells, Receiver};
+use crate::transport::weighted::WeightedSink;
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
@@ -37,6 +38,11 @@ impl<'s> Receivers<'s> {
         ReceiverSink { receivers: self }
     }
 
+    /// The same for weighted photons, a photon of weight 1 counting as `units_per_photon`.
+    pub fn fixed_point_sink(&self, units_per_photon: f64) -> FixedPointSink<'_, 's> {
+        FixedPointSink { receivers: self, units_per_photon, amount: 0 }
+    }
+
     /// Counts of a receiver, row by row from the top left, or face by face.
     pub fn counts(&self, receiver: usize) -> &Counts {
         &self.counts[receiver]
@@ -52,6 +58,30 @@ impl<'s> Receivers<'s> {
     /// Sets everything to zero, for the next replicate.
     pub fn clear(&mut self) {
         self.counts.iter_mut().for_each(Counts::clear);
+    }
+
+    /// Calls `add` for every cell that an arrival belongs to.
+    #[inline]
+    fn count(&self, arrival: &Arrival<'_>, add: impl Fn(&Counts, usize)) {
+        for &i in &self.on_surface[arrival.hit.surface.0 as usize] {
+            let receiver = &self.receivers[i as usize];
+            let side = match receiver.side {
+                ReceiverSide::Both => true,
+                ReceiverSide::Front => arrival.hit.front,
+                ReceiverSide::Back => !arrival.hit.front,
+            };
+            let history = match receiver.events {
+                ReceiverEvents::All => true,
+                ReceiverEvents::Direct => arrival.events == 0,
+                ReceiverEvents::Indirect => arrival.events > 0,
+            };
+            if side
+                && history
+                && let Some(cell) = self.cell(receiver, arrival.hit)
+            {
+                add(&self.counts[i as usize], cell);
+            }
+        }
     }
 
     fn cell(&self, receiver: &Receiver, hit: &Hit) -> Option<usize> {
@@ -77,25 +107,29 @@ pub struct ReceiverSink<'r, 's> {
 impl Sink for ReceiverSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_>) {
-        let all = self.receivers;
-        for &i in &all.on_surface[arrival.hit.surface.0 as usize] {
-            let receiver = &all.receivers[i as usize];
-            let side = match receiver.side {
-                ReceiverSide::Both => true,
-                ReceiverSide::Front => arrival.hit.front,
-                ReceiverSide::Back => !arrival.hit.front,
-            };
-            let history = match receiver.events {
-                ReceiverEvents::All => true,
-                ReceiverEvents::Direct => arrival.events == 0,
-                ReceiverEvents::Indirect => arrival.events > 0,
-            };
-            if side
-                && history
-                && let Some(cell) = all.cell(receiver, arrival.hit)
-            {
-                all.counts[i as usize].add(cell);
-            }
-        }
+        self.receivers.count(arrival, Counts::add);
+    }
+}
+
+/// Adds weighted arrivals to a scene's receivers, in units of a fixed fraction of a photon: integers, so that sums do
+/// not depend on the order.
+#[derive(Debug, Clone, Copy)]
+pub struct FixedPointSink<'r, 's> {
+    receivers: &'r Receivers<'s>,
+    units_per_photon: f64,
+    amount: u64,
+}
+
+impl WeightedSink for FixedPointSink<'_, '_> {
+    #[inline]
+    fn weigh(&mut self, weight: f64) {
+        self.amount = (weight * self.units_per_photon + 0.5) as u64;
+    }
+}
+
+impl Sink for FixedPointSink<'_, '_> {
+    #[inline]
+    fn arrive(&mut self, arrival: &Arrival<'_>) {
+        self.receivers.count(arrival, |counts, cell| counts.add_amount(cell, self.amount));
     }
 }

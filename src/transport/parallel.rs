@@ -19,7 +19,7 @@ use super::walk::{Sink, walk};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.
-const BATCH: u64 = 1 << 14;
+pub(super) const BATCH: u64 = 1 << 14;
 
 /// What a range of photons left beside the sink's sums.
 #[derive(Debug, Clone)]
@@ -69,14 +69,14 @@ pub struct How<'a> {
 /// The first coordinate of a Sobol' point is the bit-reversed index, scrambled digit by digit, so in this order
 /// neighbours have neighbouring first coordinates: the same emitter, the same table cell, nearly the same ray. They visit
 /// the same nodes of the search tree while these are in the cache. The sums do not depend on the order.
-struct Order {
+pub(super) struct Order {
     start: u64,
     length: u64,
     bits: u32,
 }
 
 impl Order {
-    fn new(range: &Range<u64>) -> Self {
+    pub(super) fn new(range: &Range<u64>) -> Self {
         let length = range.end.saturating_sub(range.start);
         Self { start: range.start, length, bits: length.max(2).next_power_of_two().trailing_zeros() }
     }
@@ -86,7 +86,14 @@ impl Order {
         1 << self.bits
     }
 
-    fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
+    /// Ranges of slots, one a task.
+    pub(super) fn batches(&self) -> impl ParallelIterator<Item = Range<u64>> + use<> {
+        let slots = self.slots();
+        let batch = move |k: u64| k * BATCH..slots.min((k + 1) * BATCH);
+        (0..slots.div_ceil(BATCH)).into_par_iter().map(batch)
+    }
+
+    pub(super) fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
         let Self { start, length, bits } = *self;
         slots
             .map(move |slot| slot.reverse_bits() >> (64 - bits))
@@ -105,11 +112,9 @@ pub fn trace_range<P: Points, S: Sink>(
 ) -> Traced {
     let empty = || Traced::new(scene);
     let order = Order::new(&range);
-    let batches = order.slots().div_ceil(BATCH);
-    (0..batches)
-        .into_par_iter()
-        .fold(empty, |mut traced, batch| {
-            let slots = batch * BATCH..order.slots().min((batch + 1) * BATCH);
+    order
+        .batches()
+        .fold(empty, |mut traced, slots| {
             let before = traced.ledger.total_emitted();
             trace_batch(scene, points, order.indices(slots), how, &mut sink(), &mut traced);
             (how.progress)(traced.ledger.total_emitted() - before);

@@ -1,0 +1,54 @@
+//! Photons with weights, for references: directions uniform in solid angle, each photon weighted by the intensity there.
+//!
+//! Of the sampler under test this uses the surfaces' part only: no table of cells, no cell equation, no choice by flux
+//! inside a luminaire. A photon of weight zero is not followed.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use crate::sample::coordinates::Coordinates;
+use crate::scene::Scene;
+use crate::sequence::Points;
+
+use super::census::Exceptions;
+use super::parallel::{How, Order};
+use super::walk::{Sink, walk};
+
+/// A sink that is told the weight of the photon that follows.
+pub trait WeightedSink: Sink {
+    /// Arrivals from here on carry this weight (1 on average).
+    fn weigh(&mut self, weight: f64);
+}
+
+/// Traces the photons of these indices with weights; false after an interrupt.
+pub fn trace_weighted<P: Points, S: WeightedSink>(
+    scene: &Scene,
+    points: &P,
+    range: Range<u64>,
+    how: How<'_>,
+    sink: impl Fn() -> S + Sync,
+) -> bool {
+    let order = Order::new(&range);
+    order.batches().all(|slots| {
+        let mut sink = sink();
+        let mut exceptions = Exceptions::default();
+        let mut photons = 0;
+        for index in order.indices(slots) {
+            if how.interrupt.load(Ordering::Relaxed) {
+                return false;
+            }
+            let mut coordinates = Coordinates::new(points, index, how.reuse);
+            let (emitter, emission, weight) = scene.emitters.emit_weighted(&mut coordinates);
+            if weight > 0.0 {
+                sink.weigh(weight);
+                let start = scene.start(emitter);
+                walk(scene, emission, start, &mut coordinates, &mut sink, &mut exceptions);
+            }
+            photons += 1;
+        }
+        (how.progress)(photons);
+        true
+    })
+}
