@@ -16,6 +16,7 @@ use glam::{DMat3, DVec3};
 use super::Emission;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::frame::frame_from_axis;
+use crate::math::solve::Solver;
 use crate::photometry::Photometry;
 use crate::photometry::web::PhotometricType;
 use crate::sample::choose::Reusable;
@@ -112,7 +113,7 @@ impl Photometric {
         let cell = coordinates.choose(self.grid.choice(), &mut u, Purpose::Emission);
         let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
         let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-        let point = self.grid.place(cell, u_theta, u_phi);
+        let point = self.grid.place(cell, u_theta, u_phi, Solver::Secant);
         Emission { origin: self.position, direction: self.axes * point.direction }
     }
 

@@ -1,0 +1,123 @@
+//! The polar angle within a cell: eq. (8) of the paper about the cell's own edge, and its root by each solver.
+//!
+//! With a = A1 + A2, b = B1 + B2 and the in-cell variable s = theta - theta1 the integral of the theta marginal is
+//!
+//! ```text
+//! F(s) = a (S sin s + C (1 - cos s)) + (b - a)/dt (S (s sin s - (1 - cos s)) + C (sin s - s cos s)),
+//! ```
+//!
+//! S = sin theta1, C = cos theta1. Every term is of the order of the result, so nothing cancels in narrow cells or at a
+//! pole, where eq. (8) in absolute angles loses all digits.
+
+use super::cell::Row;
+use crate::math::solve::{Root, Solver, bisection, bracketed_newton, bracketed_secant, ridder};
+use crate::math::trig::InCell;
+
+/// Residual |F(s)/F(dt) - u| at which a solver stops: 2^-46, a few times the rounding of F itself.
+const TOLERANCE: f64 = 1.0 / (1u64 << 46) as f64;
+
+/// A polar angle inside a row, as sine and cosine.
+#[derive(Debug, Clone, Copy)]
+pub struct Polar {
+    /// theta - theta1, in [0, dt].
+    pub s: f64,
+    /// sin theta.
+    pub sin: f64,
+    /// cos theta.
+    pub cos: f64,
+    /// Evaluations of F that the solver used.
+    pub evaluations: u32,
+}
+
+/// The theta marginal of a cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Marginal<'r> {
+    row: &'r Row,
+    /// a and b as given.
+    edges: (f64, f64),
+    /// a times the scale.
+    level: f64,
+    /// (b - a) / dt times the scale.
+    rise: f64,
+}
+
+impl<'r> Marginal<'r> {
+    /// The marginal of the edge sums a and b in a row, F multiplied by `scale`.
+    #[inline]
+    pub(super) fn new(row: &'r Row, (a, b): (f64, f64), scale: f64) -> Self {
+        Self { row, edges: (a, b), level: a * scale, rise: (b - a) * row.inverse_width * scale }
+    }
+
+    /// F(s), and the trigonometry that it needed.
+    #[inline]
+    pub(super) fn mass_to(&self, s: f64) -> (f64, InCell) {
+        let t = InCell::at(s);
+        let constant = self.row.sin * t.sin + self.row.cos * t.versine;
+        let linear = self.row.sin * t.moment_cos + self.row.cos * t.moment_sin;
+        (self.level * constant + self.rise * linear, t)
+    }
+
+    /// (sin theta, cos theta) at theta1 + s.
+    #[inline]
+    fn sin_cos(&self, t: &InCell) -> (f64, f64) {
+        let cos_s = 1.0 - t.versine;
+        ((self.row.sin * cos_s + self.row.cos * t.sin).max(0.0), self.row.cos * cos_s - self.row.sin * t.sin)
+    }
+
+    /// The s at which F is u, for a marginal whose F(dt) is 1.
+    #[inline]
+    pub(super) fn solve(&self, u: f64, solver: Solver) -> Polar {
+        let w = self.row.width;
+        let root = match solver {
+            Solver::Secant => {
+                let (start, inverse_slope) = self.linear_start(u);
+                bracketed_secant(0.0, w, start, inverse_slope, TOLERANCE, |s| self.residual(s, u))
+            }
+            Solver::Newton => self.newton(u * w, u),
+            Solver::QuadraticNewton => self.newton(self.linear_start(u).0, u),
+            Solver::Ridder => ridder((0.0, -u), (w, 1.0 - u), TOLERANCE, |s| self.residual(s, u)),
+            Solver::Bisection => bisection(0.0, w, TOLERANCE, |s| self.residual(s, u)),
+        };
+        let (sin, cos) = self.sin_cos(&root.by_product);
+        Polar { s: root.x, sin, cos, evaluations: root.evaluations }
+    }
+
+    #[inline]
+    fn residual(&self, s: f64, u: f64) -> (f64, InCell) {
+        let (mass, t) = self.mass_to(s);
+        (mass - u, t)
+    }
+
+    #[inline]
+    fn newton(&self, start: f64, u: f64) -> Root<InCell> {
+        bracketed_newton(0.0, self.row.width, start, TOLERANCE, |s| {
+            let (mass, t) = self.mass_to(s);
+            (mass - u, (self.level + self.rise * s) * self.sin_cos(&t).0, t)
+        })
+    }
+
+    /// The root and the inverse slope there of the distribution function whose density is linear between the end
+    /// values a sin theta1 and b sin theta2. Where both vanish (a cell from pole to pole, a pole with a zero edge) it
+    /// has none, and u itself serves.
+    #[inline]
+    fn linear_start(&self, u: f64) -> (f64, f64) {
+        let w = self.row.width;
+        let (g0, g1) = (self.edges.0 * self.row.sin, self.edges.1 * self.row.sin_end);
+        let near = g0 / (g0 + g1);
+        if near.is_finite() {
+            let x = linear_quantile(near, u);
+            (x * w, 0.5 * w / (near + (1.0 - 2.0 * near) * x))
+        } else {
+            (u * w, w)
+        }
+    }
+}
+
+/// Quantile u of a density on [0, 1] that is linear from `near` to 1 - `near` (in units of their sum): the root of
+/// (1 - 2 near) x^2 + 2 near x = u in the form that does not cancel.
+#[inline]
+pub(super) fn linear_quantile(near: f64, u: f64) -> f64 {
+    let far = 1.0 - near;
+    let denominator = near + (near * near * (1.0 - u) + far * far * u).sqrt();
+    if denominator > 0.0 { (u / denominator).min(1.0) } else { u }
+}
