@@ -211,8 +211,12 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
             let drawn = check_photon(scene, &owen, i, reuse, &mut totals);
             histogram[(drawn as usize).min(LONGEST_DIMENSION)] += 1;
         }
-        let how =
-            How { sampling: Sampling::Inverse, reuse, interrupt: &AtomicBool::new(false), progress: &|_| {} };
+        let how = How {
+            sampling: Sampling::default(),
+            reuse,
+            interrupt: &AtomicBool::new(false),
+            progress: &|_| {},
+        };
         let census = trace_range(scene, &owen, 0..photons, how, || Ignore).census;
         assert_eq!(census.drawn_for.iter().sum::<u64>(), totals.drawn, "{name}");
         assert_eq!(census.dimension_histogram, histogram, "{name}");

@@ -152,7 +152,7 @@ fn seeds_and_replicates_share_no_coordinate_stream() {
 fn part<'s, P: Points>(scene: &'s Scene, points: &P, range: Range<u64>) -> (Receivers<'s>, Traced) {
     let receivers = Receivers::new(&scene.geometry, &scene.receivers);
     let interrupt = AtomicBool::new(false);
-    let how = How { sampling: Sampling::Inverse, reuse: true, interrupt: &interrupt, progress: &|_| {} };
+    let how = How { sampling: Sampling::default(), reuse: true, interrupt: &interrupt, progress: &|_| {} };
     let traced = trace_range(scene, points, range, how, || receivers.sink());
     assert!(traced.complete);
     (receivers, traced)

@@ -41,7 +41,7 @@ fn emitter(photometry: &Photometry) -> Photometric {
 
 /// (polar angle, azimuth) in degrees of directions that photons of this file start with.
 fn sampled_angles(photometry: &Photometry, density: &Density<'_>, seed: u64) -> Vec<(f64, f64)> {
-    angles_by(Sampling::Inverse, photometry, density, seed)
+    angles_by(Sampling::default(), photometry, density, seed)
 }
 
 /// The same by another way of sampling tables.

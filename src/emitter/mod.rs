@@ -13,6 +13,7 @@ pub mod photometric;
 use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::math::solve::Solver;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::discrete::Discrete;
@@ -53,17 +54,8 @@ impl Emitter {
         }
     }
 
-    /// A photon's start; `u` is the coordinate that chose the emitter, renormalised.
-    #[inline]
-    pub fn emit<P: Points>(&self, u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
-        match self {
-            Self::Photometric(e) => e.emit(u, coordinates),
-            Self::Isotropic(e) => e.emit(u, coordinates),
-            Self::Collimated(e) => e.emit(u, coordinates),
-        }
-    }
-
-    /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.
+    /// A photon's start; `u` is the coordinate that chose the emitter, renormalised. `None` where this point of the sequence
+    /// gives no photon, which only rejection knows.
     #[inline]
     pub fn emit_by<P: Points>(
         &self,
@@ -72,14 +64,16 @@ impl Emitter {
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
         match (self, sampling) {
+            (Self::Photometric(e), Sampling::Inverse(solver)) => Some(e.emit(u, coordinates, solver)),
             (Self::Photometric(e), Sampling::Rejection(rejection)) => {
                 e.emit_by_rejection(u, coordinates, rejection)
             }
-            _ => Some(self.emit(u, coordinates)),
+            (Self::Isotropic(e), _) => Some(e.emit(u, coordinates)),
+            (Self::Collimated(e), _) => Some(e.emit(u, coordinates)),
         }
     }
 
-    /// A photon's start by a map that shares nothing with [`Self::emit`] where there is a table, and its weight (1 on
+    /// A photon's start by a map that shares nothing with [`Self::emit_by`] where there is a table, and its weight (1 on
     /// average): for references.
     pub fn emit_weighted<P: Points>(
         &self,
@@ -88,7 +82,8 @@ impl Emitter {
     ) -> (Emission, f64) {
         match self {
             Self::Photometric(e) => e.emit_weighted(u, coordinates),
-            _ => (self.emit(u, coordinates), 1.0),
+            Self::Isotropic(e) => (e.emit(u, coordinates), 1.0),
+            Self::Collimated(e) => (e.emit(u, coordinates), 1.0),
         }
     }
 
@@ -153,12 +148,17 @@ impl Emitters {
         &self.emitters
     }
 
-    /// Starts a photon: the index of its emitter and where it starts. A single emitter costs no choice.
+    /// Starts a photon by inverse functions: the index of its emitter and where it starts. A single emitter costs no choice.
     #[inline]
     pub fn emit<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission) {
         let mut u = coordinates.draw_reusable(Purpose::Emission);
         let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
-        (which, self.emitters[which].emit(u, coordinates))
+        let emission = match &self.emitters[which] {
+            Emitter::Photometric(e) => e.emit(u, coordinates, Solver::DEFAULT),
+            Emitter::Isotropic(e) => e.emit(u, coordinates),
+            Emitter::Collimated(e) => e.emit(u, coordinates),
+        };
+        (which, emission)
     }
 
     /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.

@@ -109,11 +109,16 @@ impl Photometric {
 
     /// A photon's start: the cell by its flux, theta and phi by inverse functions.
     #[inline]
-    pub fn emit<P: Points>(&self, mut u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
+    pub fn emit<P: Points>(
+        &self,
+        mut u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+        solver: Solver,
+    ) -> Emission {
         let cell = coordinates.choose(self.grid.choice(), &mut u, Purpose::Emission);
         let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
         let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-        let point = self.grid.place(cell, u_theta, u_phi, Solver::Secant);
+        let point = self.grid.place(cell, u_theta, u_phi, solver);
         Emission { origin: self.position, direction: self.axes * point.direction }
     }
 

@@ -111,7 +111,7 @@ impl UsePoints for Stage<'_, '_> {
         let Self { scene, how, receivers, attempts, wanted } = self;
         let end = match how.sampling {
             s if s.skips_points() => advance(scene, points, &how, attempts, wanted),
-            Sampling::Inverse | Sampling::Rejection(_) => attempts + wanted,
+            Sampling::Inverse(_) | Sampling::Rejection(_) => attempts + wanted,
         };
         (trace_range(scene, points, attempts..end, how, || receivers.sink()), end)
     }

@@ -87,7 +87,7 @@ pub fn trace_replicate(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Option<Vec<u64>>> {
     let receivers = Receivers::new(&scene.geometry, &grids.receivers);
-    let how = How { reuse: true, sampling: Sampling::Inverse, interrupt, progress };
+    let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
     let points =
         PointSet { sequence: plan.sequence, seed: plan.seed, replicate, number: plan.photons_per_replicate };
     let complete = points.provide(Replicate {
@@ -143,8 +143,7 @@ impl Reference {
         let own = |cells: Range<usize>| {
             nrms_of_mean(&sum_lx[cells.clone()], &square_lx2[cells.clone()], &areas_m2[cells], r)
         };
-        let own_nrms =
-            grids.cell_ranges().into_iter().map(|cells| own(cells).unwrap_or(f64::NAN)).collect();
+        let own_nrms = grids.cell_ranges().into_iter().map(|cells| own(cells).unwrap_or(f64::NAN)).collect();
         Self { illuminance_lx: sum_lx.iter().map(|sum| sum / f64::from(r)).collect(), own_nrms }
     }
 }
