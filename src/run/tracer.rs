@@ -6,6 +6,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::independent::IndependentPoints;
+use crate::sequence::other::OtherPoints;
 use crate::sequence::owen::OwenPoints;
 use crate::sequence::sobol::SobolPoints;
 use crate::sequence::{Points, Sequence};
@@ -47,6 +48,7 @@ impl PointSet {
             Sequence::Independent => user.with(&IndependentPoints::new(self.seed, self.replicate)),
             Sequence::Sobol => user.with(&SobolPoints::new()),
             Sequence::SobolOwen => user.with(&OwenPoints::new(self.seed, self.replicate)),
+            other => user.with(&OtherPoints::new(other, self.seed, self.replicate, Some(self.number))?),
         })
     }
 }
@@ -73,7 +75,7 @@ impl<'s> Tracer<'s> {
     /// Traces up to photon number `until`.
     ///
     /// # Errors
-    /// A sequence that cannot have this many points, and a ledger that does not balance (a defect of the program).
+    /// A sequence that cannot have this many points or, where rejection skips points, more; a ledger that does not balance (a defect of the program).
     pub fn trace(
         &mut self,
         until: u64,
@@ -81,6 +83,13 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
+        if self.algorithm.sampling().skips_points() && self.points.sequence.needs_number() {
+            return Err(Diagnostic::new(
+                Kind::Range,
+                format!("variant {}", self.algorithm.name()),
+                "a sequence that goes on beyond N points, for rejection that retries with the next one",
+            ));
+        }
         let how = How {
             reuse: self.algorithm.variant.reuses(),
             sampling: self.algorithm.sampling(),

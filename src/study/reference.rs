@@ -72,7 +72,7 @@ impl ReferencePlan {
 /// Emission map of references, in words.
 pub const EMISSION_MAP: &str = "directions uniform in solid angle, weighted by the intensity";
 /// Sequence of references.
-const SEQUENCE: Sequence = Sequence::SobolOwen;
+const SEQUENCE: Sequence = Sequence::HaltonRotation;
 
 /// Fixed-point sums of one replicate of a reference, cell by cell over all grids; `None` after an interrupt.
 ///

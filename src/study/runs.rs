@@ -60,7 +60,7 @@ impl Measure<'_> {
         let scene = self.scene;
         let mut receivers = Receivers::new(&scene.geometry, &self.grids.receivers);
         let longest = ladder.last().copied().unwrap_or(0);
-        let anew = false;
+        let anew = algorithm.sequence.needs_number();
         let mut tracer = Tracer::new(scene, algorithm, seed, 0, longest);
         let (mut so_far, mut cpu_s) = (Traced::new(scene), 0.0);
         let mut runs = Vec::new();
