@@ -10,7 +10,9 @@
 //! pole, where eq. (8) in absolute angles loses all digits.
 
 use super::cell::Row;
-use crate::math::solve::{Root, Solver, bisection, bracketed_newton, bracketed_secant, ridder};
+use crate::math::solve::{
+    Expansion, Root, Solver, bisection, bracketed_newton, bracketed_secant, bracketed_series, ridder,
+};
 use crate::math::trig::InCell;
 
 /// Residual |F(s)/F(dt) - u| at which a solver stops: 2^-46, a few times the rounding of F itself.
@@ -74,7 +76,7 @@ impl<'r> Marginal<'r> {
                 bracketed_secant(0.0, w, start, inverse_slope, TOLERANCE, |s| self.residual(s, u))
             }
             Solver::Newton => self.newton(u * w, u),
-            Solver::QuadraticNewton => self.newton(self.linear_start(u).0, u),
+            Solver::QuadraticNewton => return self.quadratic_newton(u),
             Solver::Ridder => ridder((0.0, -u), (w, 1.0 - u), TOLERANCE, |s| self.residual(s, u)),
             Solver::Bisection => bisection(0.0, w, TOLERANCE, |s| self.residual(s, u)),
         };
@@ -94,6 +96,51 @@ impl<'r> Marginal<'r> {
             let (mass, t) = self.mass_to(s);
             (mass - u, (self.level + self.rise * s) * self.sin_cos(&t).0, t)
         })
+    }
+
+    /// From the quadratic start by the Taylor series of F: every derivative of (level + rise s) sin(theta) is at hand
+    /// once F is, and bounded by the largest value plus its order times the rise.
+    #[inline]
+    fn quadratic_newton(&self, u: f64) -> Polar {
+        let w = self.row.width;
+        let scaled_b = self.level + self.rise * w;
+        let (g0, g1) = (self.level * self.row.sin, scaled_b * self.row.sin_end);
+        let denominator = g0 + (g0 * g0 * (1.0 - u) + g1 * g1 * u).sqrt();
+        let x = if denominator > 0.0 { u * (g0 + g1) / denominator } else { u };
+        let largest = self.level.max(scaled_b);
+        let fifth = largest + 4.0 * self.rise.abs();
+        let root = bracketed_series(0.0, w, x * w, TOLERANCE, |s| {
+            let (mass, t) = self.mass_to(s);
+            let (sin, cos) = self.sin_cos(&t);
+            let value = self.level + self.rise * s;
+            let (value_sin, value_cos) = (value * sin, value * cos);
+            let (rise_sin, rise_cos) = (self.rise * sin, self.rise * cos);
+            Expansion {
+                value: mass - u,
+                derivatives: [
+                    value_sin,
+                    rise_sin + value_cos,
+                    2.0 * rise_cos - value_sin,
+                    -3.0 * rise_sin - value_cos,
+                ],
+                fifth,
+                by_product: (s, sin, cos),
+            }
+        });
+        let (s, sin, cos) = root.by_product;
+        // The step beyond the last evaluation is at most 1e-3.
+        let step = root.x - s;
+        let square = step * step;
+        let (sin_step, versine_step) = (
+            step * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0))),
+            square * (0.5 - square * (1.0 / 24.0)),
+        );
+        Polar {
+            s: root.x,
+            sin: (sin - sin * versine_step + cos * sin_step).max(0.0),
+            cos: cos - cos * versine_step - sin * sin_step,
+            evaluations: root.evaluations,
+        }
     }
 
     /// The root and the inverse slope there of the distribution function whose density is linear between the end

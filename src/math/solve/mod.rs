@@ -8,11 +8,13 @@ mod bisection;
 mod newton;
 mod ridder;
 mod secant;
+mod series;
 
 pub use bisection::bisection;
 pub use newton::bracketed_newton;
 pub use ridder::ridder;
 pub use secant::bracketed_secant;
+pub use series::{Expansion, bracketed_series};
 
 /// A method for the cell equation (METHOD 3, paper eq. 8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
