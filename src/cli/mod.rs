@@ -1,7 +1,9 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
 pub mod check;
+pub mod compare;
 pub mod photometry;
+mod progress;
 pub mod render;
 
 use std::path::PathBuf;
@@ -47,8 +49,8 @@ enum Sub {
     Photometry(PhotometryArgs),
     /// Check a scene without tracing it.
     Check(CheckArgs),
-    /// The error of every algorithm variant (not available yet).
-    Compare(Later),
+    /// Measure the error of every algorithm variant against a reference (without SCENE: the built-in scene).
+    Compare(compare::CompareArgs),
     /// Sample directions of a photometric file (not available yet).
     Sample(Later),
     /// Say what a BSDF file holds (not available yet).
@@ -161,7 +163,7 @@ pub fn main() -> ExitCode {
         Some(Sub::Render(args)) => render::run(&args),
         Some(Sub::Photometry(args)) => photometry::run(&args),
         Some(Sub::Check(args)) => check::run(&args),
-        Some(Sub::Compare(_)) => not_available("compare"),
+        Some(Sub::Compare(args)) => compare::run(&args),
         Some(Sub::Sample(_)) => not_available("sample"),
         Some(Sub::Bsdf(_)) => not_available("bsdf"),
     };

@@ -5,6 +5,7 @@ pub mod candela;
 pub mod compare;
 pub mod json;
 pub mod maps;
+pub mod parts;
 pub mod polar;
 pub mod statistics;
 pub mod text;
