@@ -18,6 +18,7 @@ use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::discrete::Discrete;
 use crate::sample::method::Sampling;
+use crate::sample::rejection::UniformMap;
 use crate::sequence::Points;
 
 pub use collimated::Collimated;
@@ -70,20 +71,6 @@ impl Emitter {
             }
             (Self::Isotropic(e), _) => Some(e.emit(u, coordinates)),
             (Self::Collimated(e), _) => Some(e.emit(u, coordinates)),
-        }
-    }
-
-    /// A photon's start by a map that shares nothing with [`Self::emit_by`] where there is a table, and its weight (1 on
-    /// average): for references.
-    pub fn emit_weighted<P: Points>(
-        &self,
-        u: Reusable,
-        coordinates: &mut Coordinates<'_, P>,
-    ) -> (Emission, f64) {
-        match self {
-            Self::Photometric(e) => e.emit_weighted(u, coordinates),
-            Self::Isotropic(e) => (e.emit(u, coordinates), 1.0),
-            Self::Collimated(e) => (e.emit(u, coordinates), 1.0),
         }
     }
 
@@ -172,12 +159,38 @@ impl Emitters {
         let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
         Some((which, self.emitters[which].emit_by(sampling, u, coordinates)?))
     }
+}
 
-    /// Starts a weighted photon: [`Emitter::emit_weighted`] of an emitter chosen by flux.
-    pub fn emit_weighted<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission, f64) {
+/// The emission of references: from a table in directions uniform in solid angle, weighted; from anything else as ever.
+#[derive(Debug, Clone)]
+pub struct WeightedEmitters<'e> {
+    emitters: &'e Emitters,
+    maps: Vec<Option<UniformMap>>,
+}
+
+impl<'e> WeightedEmitters<'e> {
+    /// The maps of these emitters.
+    ///
+    /// # Errors
+    /// None for emitters that stand in a scene.
+    pub fn new(emitters: &'e Emitters) -> Result<Self> {
+        let map = |emitter: &Emitter| match emitter {
+            Emitter::Photometric(e) => UniformMap::new(e.grid()).map(Some),
+            Emitter::Isotropic(_) | Emitter::Collimated(_) => Ok(None),
+        };
+        Ok(Self { emitters, maps: emitters.emitters.iter().map(map).collect::<Result<_>>()? })
+    }
+
+    /// Starts a photon: the index of its emitter, where it starts, and its weight, 1 on average.
+    pub fn emit<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission, f64) {
         let mut u = coordinates.draw_reusable(Purpose::Emission);
-        let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
-        let (emission, weight) = self.emitters[which].emit_weighted(u, coordinates);
+        let which = coordinates.choose(&self.emitters.choice, &mut u, Purpose::Emission);
+        let (emission, weight) = match (&self.emitters.emitters[which], &self.maps[which]) {
+            (Emitter::Photometric(e), Some(map)) => e.emit_weighted(map, u, coordinates),
+            (Emitter::Photometric(e), None) => (e.emit(u, coordinates, Solver::DEFAULT), 1.0),
+            (Emitter::Isotropic(e), _) => (e.emit(u, coordinates), 1.0),
+            (Emitter::Collimated(e), _) => (e.emit(u, coordinates), 1.0),
+        };
         (which, emission, weight)
     }
 }

@@ -23,6 +23,7 @@ use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::grid::Grid;
 use crate::sample::method::Rejection;
+use crate::sample::rejection::UniformMap;
 use crate::sequence::{Points, to_unit_f64};
 
 /// A photometric point emitter.
@@ -133,17 +134,15 @@ impl Photometric {
         Some(Emission { origin: self.position, direction: self.axes * point.direction })
     }
 
-    /// A photon's start with a direction uniform in solid angle over the range of the table, and the weight (1 on average)
-    /// that gives it the table's intensity. Shares no table of cells and no equation with [`Self::emit`].
+    /// A photon's start with a direction uniform in solid angle where the table is not zero, and the weight (1 on average)
+    /// that makes its intensity the table's.
     pub fn emit_weighted<P: Points>(
         &self,
+        map: &UniformMap,
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> (Emission, f64) {
-        let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
-        let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-        let point = self.grid.uniform(u_theta, u_phi);
-        let weight = self.grid.value(point.theta, point.phi) * self.grid.solid_angle() / self.grid.integral();
+        let (point, weight) = map.sample(&self.grid, u, coordinates);
         (Emission { origin: self.position, direction: self.axes * point.direction }, weight)
     }
 }

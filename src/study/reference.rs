@@ -7,6 +7,7 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
+use crate::emitter::WeightedEmitters;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::run::tracer::{PointSet, UsePoints};
 use crate::sample::method::Sampling;
@@ -70,7 +71,8 @@ impl ReferencePlan {
 }
 
 /// Emission map of references, in words.
-pub const EMISSION_MAP: &str = "directions uniform in solid angle, weighted by the intensity";
+pub const EMISSION_MAP: &str =
+    "directions uniform in solid angle (over the cells that emit), weighted by the intensity";
 /// Sequence of references.
 const SEQUENCE: Sequence = Sequence::HaltonRotation;
 
@@ -92,6 +94,7 @@ pub fn trace_replicate(
         PointSet { sequence: plan.sequence, seed: plan.seed, replicate, number: plan.photons_per_replicate };
     let complete = points.provide(Replicate {
         scene,
+        emitters: WeightedEmitters::new(&scene.emitters)?,
         receivers: &receivers,
         how,
         photons: plan.photons_per_replicate,
@@ -103,6 +106,7 @@ pub fn trace_replicate(
 
 struct Replicate<'a, 's> {
     scene: &'s Scene,
+    emitters: WeightedEmitters<'s>,
     receivers: &'a Receivers<'s>,
     how: How<'a>,
     photons: u64,
@@ -114,7 +118,7 @@ impl UsePoints for Replicate<'_, '_> {
 
     fn with<P: Points>(self, points: &P) -> bool {
         let sink = || self.receivers.fixed_point_sink(self.units);
-        trace_weighted(self.scene, points, 0..self.photons, self.how, sink)
+        trace_weighted(self.scene, &self.emitters, points, 0..self.photons, self.how, sink)
     }
 }
 

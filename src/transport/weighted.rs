@@ -1,13 +1,13 @@
 //! Photons with weights, for references: directions uniform in solid angle, each photon weighted by the intensity there.
 //!
-//! Of the sampler under test this uses the surfaces' part only: no table of cells, no cell equation, no choice by flux
-//! inside a luminaire. A photon of weight zero is not followed.
+//! Of the sampler under test this uses the surfaces' part only: no cell equation, no choice by flux inside a luminaire. A photon of weight zero is not followed.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
+use crate::emitter::WeightedEmitters;
 use crate::sample::coordinates::Coordinates;
 use crate::scene::Scene;
 use crate::sequence::Points;
@@ -25,6 +25,7 @@ pub trait WeightedSink: Sink {
 /// Traces the photons of these indices with weights; false after an interrupt.
 pub fn trace_weighted<P: Points, S: WeightedSink>(
     scene: &Scene,
+    emitters: &WeightedEmitters<'_>,
     points: &P,
     range: Range<u64>,
     how: How<'_>,
@@ -40,7 +41,7 @@ pub fn trace_weighted<P: Points, S: WeightedSink>(
                 return false;
             }
             let mut coordinates = Coordinates::new(points, index, how.reuse);
-            let (emitter, emission, weight) = scene.emitters.emit_weighted(&mut coordinates);
+            let (emitter, emission, weight) = emitters.emit(&mut coordinates);
             if weight > 0.0 {
                 sink.weigh(weight);
                 let start = scene.start(emitter);
