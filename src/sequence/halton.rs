@@ -101,9 +101,9 @@ mod tests {
                 for start in [0, block, (1 << 40) / block * block, (1 << 60) / block * block] {
                     let mut seen = vec![false; block as usize];
                     for i in start..start + block {
-                        let u = u128::from(points.coordinate(i, coordinate as u32));
-                        // The fraction is rounded down, so the middle of its last unit is asked.
-                        let cell = (((2 * u + 1) * u128::from(block)) >> 65) as usize;
+                        // The fraction is rounded down: the number lies below the next one.
+                        let above = u128::from(points.coordinate(i, coordinate as u32)) + 1;
+                        let cell = ((above * u128::from(block) - 1) >> 64) as usize;
                         assert!(!std::mem::replace(&mut seen[cell], true), "base {base}, start {start}");
                     }
                 }

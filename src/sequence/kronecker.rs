@@ -139,6 +139,7 @@ mod tests {
             }
         }
         assert_eq!(points.coordinate(0, 3), 0);
-        assert!((to_unit_f64(points.coordinate(1, 0)) - 0.929_608).abs() < 1e-6);
+        // 1 / phi_8, phi_8 = 1.085070245491451 (x^9 = x + 1).
+        assert!((to_unit_f64(points.coordinate(1, 0)) - 1.0 / 1.085_070_245_491_451).abs() < 1e-15);
     }
 }
