@@ -54,18 +54,17 @@ impl Law {
     /// The law of errors measured with one or several seeds, each at two or more numbers of photons. The levels of a
     /// seed may stand in any order. It goes through the middle, in logarithms, of the root mean squares over the seeds.
     ///
-    /// A seed's errors that are not positive and finite have no logarithm: they are left out. Where there are two or
-    /// more powers of two among the levels, only those are used: other N cost a net part of its evenness, and belong to
-    /// another law (METHOD 5). `None` when no seed has two levels.
+    /// A seed's errors that are not positive and finite have no logarithm: they are left out, and so is what is not
+    /// [`fitted`]. `None` when no seed has two levels.
     pub fn fit(seeds: &[Vec<Level>]) -> Option<Self> {
         let usable = |level: &&Level| level.photons > 0 && level.error > 0.0 && level.error.is_finite();
         let all: Vec<Vec<Level>> =
             seeds.iter().map(|levels| levels.iter().filter(usable).copied().collect()).collect();
-        let powers: Vec<Vec<Level>> = all
+        let used = fitted(&distinct(&all));
+        let chosen: Vec<Vec<Level>> = all
             .iter()
-            .map(|levels| levels.iter().filter(|l| l.photons.is_power_of_two()).copied().collect())
+            .map(|levels| levels.iter().filter(|l| used.contains(&l.photons)).copied().collect())
             .collect();
-        let chosen = if distinct(&powers).len() >= 2 { powers } else { all.clone() };
         let lines: Vec<Line> = chosen.iter().filter_map(|levels| Line::through(levels)).collect();
         if lines.is_empty() {
             return None;
@@ -141,6 +140,13 @@ impl Line {
         let slope_error = (points.len() > 2).then(|| (squares / (n - 2.0) / xx).sqrt());
         Some(Self { slope, slope_error })
     }
+}
+
+/// Which of these numbers of photons a law is fitted to: the powers of two, if there are two or more of them. Other N cost
+/// a net part of its evenness, and belong to another law.
+pub fn fitted(ladder: &[u64]) -> Vec<u64> {
+    let powers: Vec<u64> = ladder.iter().copied().filter(|n| n.is_power_of_two()).collect();
+    if powers.len() >= 2 { powers } else { ladder.to_vec() }
 }
 
 /// The numbers of photons that occur, rising.

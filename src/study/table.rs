@@ -1,6 +1,6 @@
 //! What a study says: errors over seeds, rates, ratios to Monte Carlo at equal N and at equal CPU time.
 
-use super::fit::{Law, Level, Prediction, root_mean_square};
+use super::fit::{Law, Level, Prediction, fitted, root_mean_square};
 use super::norms::Errors;
 use super::results::{Run, Study};
 
@@ -53,7 +53,7 @@ pub struct Trend {
     pub law: Option<Law>,
     /// CPU time to [`TARGET_ERROR`], s.
     pub time_to_target: Option<Prediction>,
-    /// Whether any of its errors is limited by the reference.
+    /// Whether any of the errors that the law is fitted to is limited by the reference.
     pub limited_by_reference: bool,
 }
 
@@ -145,8 +145,9 @@ fn trend(study: &Study, rows: &[Row], variant: usize, grid: usize, speed: Option
     };
     let law = Law::fit(&seeds.into_iter().map(levels_of).collect::<Vec<_>>());
     let time_to_target = law.and_then(|law| law.time_for(TARGET_ERROR, speed?));
-    let limited_by_reference =
-        rows.iter().any(|r| (r.variant, r.grid) == (variant, grid) && r.limited_by_reference);
+    let own: Vec<&Row> = rows.iter().filter(|r| (r.variant, r.grid) == (variant, grid)).collect();
+    let used = fitted(&own.iter().map(|r| r.photons).collect::<Vec<u64>>());
+    let limited_by_reference = own.iter().any(|r| used.contains(&r.photons) && r.limited_by_reference);
     Trend { law, time_to_target, limited_by_reference }
 }
 

@@ -25,13 +25,15 @@ pub const DAGGERS: Marks = Marks { limited: "†", extrapolated: "‡", one_seed
 pub const UNKNOWN: &str = "-";
 
 impl Marks {
-    /// nRMS in per cent, with its spread where that is known, both to two digits of the spread.
+    /// nRMS in per cent, with its spread where that is known, both to two digits of the spread, but no more than five of
+    /// the error.
     pub fn error(&self, row: &Row) -> String {
         let mark = if row.limited_by_reference { self.limited } else { "" };
         let error = 100.0 * row.errors.nrms;
         match row.nrms_spread.map(|spread| 100.0 * spread) {
             Some(spread) if spread > 0.0 => {
-                let decimals = (1.0 - libm::floor(libm::log10(spread))).clamp(0.0, 6.0) as usize;
+                let until_digit = |value: f64, digit: f64| digit - 1.0 - libm::floor(libm::log10(value));
+                let decimals = until_digit(spread, 2.0).min(until_digit(error, 5.0)).clamp(0.0, 9.0) as usize;
                 format!("{error:.decimals$} +- {spread:.decimals$}{mark}")
             }
             _ => format!("{}{mark}", three_digits(error)),
@@ -96,6 +98,8 @@ mod tests {
             limited_by_reference: false,
         };
         assert_eq!(ASCII.error(&row), "2.513 +- 0.021");
+        row.nrms_spread = Some(1e-12);
+        assert_eq!(ASCII.error(&row), "2.5134 +- 0.0000");
         row.limited_by_reference = true;
         row.nrms_spread = None;
         assert_eq!(ASCII.error(&row), "2.51*");

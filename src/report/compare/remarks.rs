@@ -105,7 +105,7 @@ fn limits(study: &Study, table: &Table) -> Vec<String> {
             if !at.is_empty() {
                 warnings.push(format!(
                     "{} on {} cells: the error at N = {} is less than {REFERENCE_MARGIN} x the reference's own and \
-                     limited by it; its rate and ratios are, too",
+                     limited by it, and so is what follows from it",
                     variant.name,
                     cells(*grid),
                     list(&at)
