@@ -10,7 +10,8 @@
 //!    direction and what happens to it at every surface ([`transport`]), until it is absorbed or escapes.
 //! 4. [`tally`] counts arrivals in the receivers' cells, in integers: any number of threads gives the same bits.
 //! 5. [`estimate`] turns counts of replicates into standard errors; [`run::Outcome`] gives lux and lumens.
-//! 6. [`image`], [`report`] and [`cli`] write EXR, PNG and JSON, and are the command.
+//! 6. [`certificate`] compares directions that a sampler gives with the density that a photometric file stands for.
+//! 7. [`image`], [`report`] and [`cli`] write EXR, PNG and JSON, and are the command.
 //!
 //! Errors are [`Diagnostic`]s; nothing panics, exits or prints on data. `docs/METHOD.md` has the equations ("METHOD 3" in a
 //! comment is its section 3), `ARCHITECTURE.md` the reasons.
@@ -59,6 +60,7 @@ pub mod tally;
 pub mod estimate;
 pub mod run;
 pub mod study;
+pub mod certificate;
 pub mod image;
 pub mod report;
 pub mod cli;

@@ -88,7 +88,6 @@ fn what_is_not_built_yet_says_so_and_exits_2() {
     for line in [
         "compare",
         "compare --full -o x",
-        "sample x.ies -n 3 --json",
         "bsdf x.bsdf",
         "render --error 1",
         "render --time 3",

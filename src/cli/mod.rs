@@ -5,6 +5,7 @@ pub mod compare;
 pub mod photometry;
 mod progress;
 pub mod render;
+pub mod sample;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -51,8 +52,8 @@ enum Sub {
     Check(CheckArgs),
     /// Measure the error of every algorithm variant against a reference (without SCENE: the built-in scene).
     Compare(compare::CompareArgs),
-    /// Sample directions of a photometric file (not available yet).
-    Sample(Later),
+    /// Sample directions of a photometric file, and judge them against its candela.
+    Sample(SampleArgs),
     /// Say what a BSDF file holds (not available yet).
     Bsdf(Later),
 }
@@ -137,6 +138,31 @@ pub struct PhotometryArgs {
     pub plot: Option<PathBuf>,
 }
 
+/// Arguments of `caustix sample`.
+#[derive(Debug, Args)]
+pub struct SampleArgs {
+    /// Photometric file (IES LM-63).
+    pub file: PathBuf,
+    /// Directions to sample, like 1e6 or 2^20.
+    #[arg(short = 'n', long = "samples", value_name = "N", allow_hyphen_values = true)]
+    pub samples: String,
+    /// Algorithm variant, as for `render` [default: qmc-inverse-reuse].
+    #[arg(long, value_name = "V")]
+    pub variant: Option<String>,
+    /// Point sequence [default: the variant's].
+    #[arg(long, value_name = "S")]
+    pub sequence: Option<String>,
+    /// Seed of the randomisation.
+    #[arg(long, value_name = "K", default_value = "1", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
+    pub seed: u64,
+    /// Write the directions as CSV: the file's own angles, the unit vector of a lamp that hangs, coordinates used.
+    #[arg(short = 'o', long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Arguments of `caustix check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -164,7 +190,7 @@ pub fn main() -> ExitCode {
         Some(Sub::Photometry(args)) => photometry::run(&args),
         Some(Sub::Check(args)) => check::run(&args),
         Some(Sub::Compare(args)) => compare::run(&args),
-        Some(Sub::Sample(_)) => not_available("sample"),
+        Some(Sub::Sample(args)) => sample::run(&args),
         Some(Sub::Bsdf(_)) => not_available("bsdf"),
     };
     ExitCode::from(code)
