@@ -363,6 +363,9 @@ fn the_terminal_table_is_aligned_and_says_what_the_numbers_say() {
     let block = &lines[first + 2..first + 7];
     assert!(block.iter().all(|line| line.chars().count() == block[0].chars().count()), "{text}");
     assert!(block[4].starts_with("qmc-inverse-reuse"), "{text}");
+    // A mark stands behind its number: the digits of the others end where its digits end.
+    let (marked, unmarked) = (block[1].rfind('~').unwrap(), block[4].trim_end());
+    assert!(unmarked.ends_with(|c: char| c.is_ascii_digit()) && unmarked.len() == marked, "{text}");
     for number in ["2.19", "-0.7", "3.00", "0.800"] {
         assert!(block[4].contains(number), "{number} is not in {}", block[4]);
     }
@@ -411,6 +414,21 @@ fn the_plot_has_every_point_its_bars_and_legible_text_on_the_page() {
         drawing.shapes.iter().filter_map(colours).filter(|l| l.2 == blue).map(|l| (l.0, l.1)).collect();
     assert_eq!(lines.iter().filter(|l| **l == (10, 2.0)).count(), 3, "a line of ten points a panel");
     assert_eq!(lines.iter().filter(|l| **l == (2, 1.4)).count(), 3 * 10 * 3, "bars with two caps");
+    // Monte Carlo's black discs are drawn last: nothing hides one in the picture of the same shapes.
+    let canvas = drawing.to_canvas();
+    let discs = drawing.shapes.iter().filter_map(|shape| match shape {
+        Shape::Polygon { corners, colour } if corners.len() == 24 && colour.to_srgb() == [0; 3] => {
+            Some(corners)
+        }
+        _ => None,
+    });
+    let mut seen = 0;
+    for corners in discs {
+        let middle = |k: usize| corners.iter().map(|c| c[k]).sum::<f64>() / 24.0;
+        assert_eq!(canvas.pixel(middle(0) as usize, middle(1) as usize).to_srgb(), [0; 3]);
+        seen += 1;
+    }
+    assert_eq!(seen, 1 + 3 * 10, "the legend's and every point's");
     for shape in &drawing.shapes {
         let inside = |p: &[f64; 2]| {
             (0.0..=drawing.width as f64).contains(&p[0]) && (0.0..=drawing.height as f64).contains(&p[1])
@@ -451,15 +469,6 @@ fn files_are_written_and_one_that_cannot_be_keeps_no_other() {
     let names: Vec<_> = files.written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
     assert_eq!((names, files.errors.len()), (vec!["compare.csv", "compare.svg"], 1));
     assert_eq!(std::fs::read_to_string(&files.written[0]).unwrap(), csv(&study, &table));
-    // For a look at them: CAUSTIX_KEEP_COMPARE=folder.
-    if let Some(folder) = std::env::var_os("CAUSTIX_KEEP_COMPARE") {
-        let files = write_files(&study, &table, &folder);
-        println!("{:?}\n{}", files, text(&study, &table));
-        drawing(&study, &table)
-            .to_canvas()
-            .write_png(std::path::Path::new(&folder).join("compare.png"))
-            .unwrap();
-    }
 }
 
 /// Tags nest, attributes are quoted, and no bare `<` or `&` stands in text.

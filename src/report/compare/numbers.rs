@@ -25,7 +25,7 @@ pub const DAGGERS: Marks = Marks { limited: "†", extrapolated: "‡", one_seed
 pub const UNKNOWN: &str = "-";
 
 impl Marks {
-    /// nRMS in per cent, with its spread where that is known, both to two digits of the spread, but no more than five of
+    /// nRMS in per cent, with its spread where that is known, both to two digits of the spread, but no more than four of
     /// the error.
     pub fn error(&self, row: &Row) -> String {
         let mark = if row.limited_by_reference { self.limited } else { "" };
@@ -33,7 +33,7 @@ impl Marks {
         match row.nrms_spread.map(|spread| 100.0 * spread) {
             Some(spread) if spread > 0.0 => {
                 let until_digit = |value: f64, digit: f64| digit - 1.0 - libm::floor(libm::log10(value));
-                let decimals = until_digit(spread, 2.0).min(until_digit(error, 5.0)).clamp(0.0, 9.0) as usize;
+                let decimals = until_digit(spread, 2.0).min(until_digit(error, 4.0)).clamp(0.0, 9.0) as usize;
                 format!("{error:.decimals$} +- {spread:.decimals$}{mark}")
             }
             _ => format!("{}{mark}", three_digits(error)),
@@ -46,10 +46,7 @@ impl Marks {
         let limited = if limited { self.limited } else { "" };
         let mark = if law.uncertainty == Uncertainty::Residuals { self.one_seed } else { "" };
         match law.rate_standard_error {
-            Some(error) => {
-                let decimals = if error < 0.001 { 4 } else { 3 };
-                format!("{:.decimals$} +- {error:.decimals$}{mark}{limited}", law.rate)
-            }
+            Some(error) => format!("{:.3} +- {error:.3}{mark}{limited}", law.rate),
             None => format!("{:.3}{limited}", law.rate),
         }
     }
@@ -99,7 +96,7 @@ mod tests {
         };
         assert_eq!(ASCII.error(&row), "2.513 +- 0.021");
         row.nrms_spread = Some(1e-12);
-        assert_eq!(ASCII.error(&row), "2.5134 +- 0.0000");
+        assert_eq!(ASCII.error(&row), "2.513 +- 0.000");
         row.limited_by_reference = true;
         row.nrms_spread = None;
         assert_eq!(ASCII.error(&row), "2.51*");

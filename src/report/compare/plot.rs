@@ -96,7 +96,7 @@ impl Axes {
                 .flat_map(|r| [r.errors.nrms, r.errors.nrms + r.nrms_spread.unwrap_or(0.0)]),
         );
         let [mut least, most] = errors.unwrap_or([1e-3, 1e-1]);
-        for own in study.reference.own_nrms.iter().copied().filter(positive) {
+        for own in study.reference.own_nrms.iter().take(study.grids.len()).copied().filter(positive) {
             if own > least / DEEPEST_REFERENCE {
                 least = least.min(own);
             }
@@ -162,6 +162,11 @@ impl Panel<'_> {
                 let label = format!("{} %", tick.label);
                 shapes.push(text([left - 7.0, y + 4.5], &label, style.anchored(Anchor::End)));
             }
+        }
+        for photons in between_powers(&self.axes.photons) {
+            let x = self.x(photons);
+            let points = vec![[x, top + height - 5.0], [x, top + height]];
+            shapes.push(Shape::Polyline { points, pen: pen(1.0, Colour::grey(130)) });
         }
         let mut free_from = f64::NEG_INFINITY;
         for (photons, label) in photon_ticks(&self.axes.photons) {
@@ -285,6 +290,15 @@ fn photon_ticks(range: &Range<f64>) -> Vec<(f64, String)> {
     let all = log_ticks(range.start, range.end);
     let powers = all.iter().filter(|t| is_power_of_ten(t.value)).count();
     all.iter().filter(|t| powers < 2 || is_power_of_ten(t.value)).map(|t| (t.value, short(t.value))).collect()
+}
+
+/// 2 to 9 times the powers of ten, within the range.
+fn between_powers(range: &Range<f64>) -> Vec<f64> {
+    let power = |value: f64| libm::floor(libm::log10(value)) as i32;
+    (power(range.start)..=power(range.end))
+        .flat_map(|p| (2..=9).map(move |digit| f64::from(digit) * libm::exp10(f64::from(p))))
+        .filter(|n| range.contains(n))
+        .collect()
 }
 
 fn is_power_of_ten(value: f64) -> bool {

@@ -48,7 +48,7 @@ fn grid_table(study: &Study, table: &Table, photons: u64, grid: usize) -> Vec<St
     let paper = study.variants.iter().any(|v| study.paper_ratio(&v.name).is_some());
     let mut head =
         vec![["", "variant"], ["", "nRMS, %"], ["", "rate"], ["coordi-", "nates"], ["Mphotons", "/ CPU s"]];
-    head.extend([["mc's error over its own", "at equal N"], ["", "at equal time"], ["CPU s", "to 1 %"]]);
+    head.extend([["mc's error / own", "equal N"], ["", "equal time"], ["CPU s", "to 1 %"]]);
     if paper {
         head.insert(6, ["", "paper"]);
     }
@@ -82,6 +82,7 @@ fn grid_table(study: &Study, table: &Table, photons: u64, grid: usize) -> Vec<St
 /// is too wide. A headline may reach over empty ones to its right.
 fn aligned(head: &[[&str; 2]], mut body: Vec<Vec<String>>) -> Vec<String> {
     let columns = head.len();
+    (1..columns).for_each(|c| make_room_for_marks(&mut body, c));
     let widest = |c: usize, body: &[Vec<String>]| {
         let entries = body.iter().map(|line| line[c].chars().count());
         entries.chain([head[c][1].len()]).max().unwrap_or(0)
@@ -107,6 +108,16 @@ fn aligned(head: &[[&str; 2]], mut body: Vec<Vec<String>>) -> Vec<String> {
     lines.push(entries(&head.iter().map(|h| h[1]).collect::<Vec<_>>()));
     lines.extend(body.iter().map(|line| entries(&line.iter().map(String::as_str).collect::<Vec<_>>())));
     lines
+}
+
+/// Spaces behind the numbers of a column that carry fewer marks than others, so that digits stand below each other.
+fn make_room_for_marks(body: &mut [Vec<String>], column: usize) {
+    let marks = |text: &str| text.len() - text.trim_end_matches(['*', '~', '^']).len();
+    let most = body.iter().map(|line| marks(&line[column])).max().unwrap_or(0);
+    for line in body {
+        let missing = most - marks(&line[column]);
+        line[column].push_str(&" ".repeat(missing));
+    }
 }
 
 /// The upper of the two lines of heads: each at the right end of its column, or over it and the empty ones that follow.
