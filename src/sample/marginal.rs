@@ -69,6 +69,16 @@ impl<'r> Marginal<'r> {
     /// The s at which F is u, for a marginal whose F(dt) is 1.
     #[inline]
     pub(super) fn solve(&self, u: f64, solver: Solver) -> Polar {
+        if solver == Solver::QuadraticNewton {
+            self.quadratic_newton(u)
+        } else {
+            self.solve_otherwise(u, solver)
+        }
+    }
+
+    /// By a solver other than the default, kept out of its way.
+    #[inline(never)]
+    fn solve_otherwise(&self, u: f64, solver: Solver) -> Polar {
         let w = self.row.width;
         let root = match solver {
             Solver::Secant => {
@@ -108,7 +118,7 @@ impl<'r> Marginal<'r> {
         let denominator = g0 + (g0 * g0 * (1.0 - u) + g1 * g1 * u).sqrt();
         let x = if denominator > 0.0 { u * (g0 + g1) / denominator } else { u };
         let largest = self.level.max(scaled_b);
-        let fifth = largest + 4.0 * self.rise.abs();
+        let remainder = (1.0 / 120.0) * (largest + 4.0 * self.rise.abs());
         let root = bracketed_series(0.0, w, x * w, TOLERANCE, |s| {
             let (mass, t) = self.mass_to(s);
             let (sin, cos) = self.sin_cos(&t);
@@ -117,13 +127,13 @@ impl<'r> Marginal<'r> {
             let (rise_sin, rise_cos) = (self.rise * sin, self.rise * cos);
             Expansion {
                 value: mass - u,
-                derivatives: [
+                series: [
                     value_sin,
-                    rise_sin + value_cos,
-                    2.0 * rise_cos - value_sin,
-                    -3.0 * rise_sin - value_cos,
+                    0.5 * (rise_sin + value_cos),
+                    (1.0 / 3.0) * rise_cos - (1.0 / 6.0) * value_sin,
+                    -0.125 * rise_sin - (1.0 / 24.0) * value_cos,
                 ],
-                fifth,
+                remainder,
                 by_product: (s, sin, cos),
             }
         });
