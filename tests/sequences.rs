@@ -95,13 +95,13 @@ fn elementary_intervals_hold_one_point_each() {
 
 #[test]
 fn a_sobol_coordinate_that_is_off_by_one_is_no_net() {
-    for coordinate in [0, 1] {
-        assert!(!is_a_net(&OffByOne { points: SobolPoints::new(), coordinate }, 0));
-        for seed in 0..5 {
-            for sequence in [Sequence::SobolOwen, Sequence::SobolShift] {
-                let points = points(sequence, seed, 1);
-                assert!(!is_a_net(&OffByOne { points, coordinate }, 0), "{} {coordinate}", sequence.name());
-            }
+    for seed in 0..5 {
+        for sequence in [Sequence::Sobol, Sequence::SobolOwen, Sequence::SobolShift] {
+            let wrong = |coordinate| OffByOne { points: points(sequence, seed, 1), coordinate };
+            assert!(!is_a_net(&wrong(1), 0), "{}", sequence.name());
+            // Not so in coordinate 0: its first a digits say what the index is modulo 2^a, and so do those of index + 1.
+            // Boxes cannot tell it; the values of the other implementation can, as above.
+            assert!(is_a_net(&wrong(0), 0), "{}", sequence.name());
         }
     }
     // Moved in all coordinates alike it is another stretch of the same sequence: not aligned, so no net either.
@@ -112,33 +112,25 @@ fn a_sobol_coordinate_that_is_off_by_one_is_no_net() {
 const NUMBERS: [u64; 8] = [1, 2, 7, 1000, 4_456_448, (1 << 32) + 15, (1 << 47) - 115, MAX_NUMBER];
 
 #[test]
-fn sets_of_any_number_of_points_fill_every_stratum_of_the_line() {
-    // Coordinate 0 of every set made for N points has one point in each [k / N, (k + 1) / N): all N of them where that
-    // is feasible, else as many as are asked for, none twice.
-    for sequence in Sequence::ALL.into_iter().filter(|s| s.needs_number()) {
-        let moved = matches!(sequence, Sequence::HammersleyRotation | Sequence::LatticeRotation);
+fn sets_of_any_number_of_points_fill_the_strata_of_the_line() {
+    // Coordinate 0 of a set made for N points has one point in each [k / N, (k + 1) / N). The first and the last points,
+    // all of them where N is small: none in a stratum of another. Jittered points have one column for many.
+    for sequence in Sequence::ALL.into_iter().filter(|s| s.needs_number() && *s != Sequence::Jittered) {
         for number in NUMBERS {
             let points = points(sequence, 3, number);
-            // A rotated set is asked relative to its first point.
-            let origin = if moved { points.coordinate(0, 0) } else { 0 };
-            let strata = match (&points, number) {
-                (OtherPoints::Jittered(points), _) => points.grid().0,
-                _ => number,
-            };
+            // A rotated set is seen from its first point; quotients are rounded down, so the number lies below the next.
+            let rotated = matches!(sequence, Sequence::HammersleyRotation | Sequence::LatticeRotation);
+            let origin = if rotated { points.coordinate(0, 0) } else { 0 };
+            let up = u128::from(sequence != Sequence::LatinHypercube);
             let count = number.min(5000);
-            let mut cells: Vec<u64> = (0..count / 2)
-                .chain(number - count.div_ceil(2)..number)
-                .map(|i| {
-                    let u = points.coordinate(i, 0).wrapping_sub(origin);
-                    let above = u128::from(u) + u128::from(!matches!(points, OtherPoints::Jittered(_)));
-                    ((above * u128::from(strata)).saturating_sub(1) >> 64) as u64
-                })
+            let indices = (0..count / 2).chain(number - count.div_ceil(2)..number);
+            let mut strata: Vec<u64> = indices
+                .map(|i| u128::from(points.coordinate(i, 0).wrapping_sub(origin)) + up)
+                .map(|u| ((u * u128::from(number) - up) >> 64) as u64)
                 .collect();
-            cells.sort_unstable();
-            assert!(cells.iter().all(|c| *c < strata), "{} {number}", sequence.name());
-            if !matches!(sequence, Sequence::Jittered | Sequence::LatinHypercube) {
-                assert!(cells.windows(2).all(|w| w[0] < w[1]), "{} {number}", sequence.name());
-            }
+            strata.sort_unstable();
+            let (last, name) = (strata[strata.len() - 1], sequence.name());
+            assert!(last < number && strata.windows(2).all(|w| w[0] < w[1]), "{name} {number}");
         }
     }
 }
@@ -184,20 +176,28 @@ fn randomised_points_are_uniform_one_by_one() {
 #[test]
 fn pairs_of_coordinates_fill_the_square() {
     // 6000 points in 8 x 8 boxes. What is more even than chance passes with room; a tie between two coordinates or two
-    // streams fails. Coordinates 2j and 2j + 1 and across pairs, and on both sides of the border to the hash.
+    // streams fails: within pairs 2j, 2j + 1 and across them, and on both sides of the border to the hash.
     let pairs = [[0, 1], [1, 2], [2, 7], [7, 8], [5, 12], [62, 63], [63, 64], [64, 65]];
     let level = sidak(1e-3, Sequence::ALL.len() * pairs.len());
     let count = 6000u64;
-    let p_value = |points: &OtherPoints, [a, b]: [u32; 2]| {
+    let p_value = |sequence, [a, b]: [u32; 2]| {
+        let points = points(sequence, 4, count);
         let mut boxes = [0u64; 64];
         for i in 0..count {
             boxes[((points.coordinate(i, a) >> 61) * 8 + (points.coordinate(i, b) >> 61)) as usize] += 1;
         }
         chi_square(&boxes, &[1.0; 64]).p_value
     };
+    // Plain radical inverses in 307 and 311 do run side by side for some 300 points at a time: what Faure's permutations
+    // are for, and a tie that this test must see.
+    assert!(p_value(Sequence::Halton, [62, 63]) < 1e-100);
+    let tied = |sequence| {
+        use Sequence::{Halton, HaltonRotation, Hammersley, HammersleyRotation};
+        matches!(sequence, Halton | HaltonRotation | Hammersley | HammersleyRotation)
+    };
     for sequence in Sequence::ALL {
-        for pair in pairs {
-            let p = p_value(&points(sequence, 4, count), pair);
+        for pair in pairs.into_iter().filter(|pair| *pair != [62, 63] || !tied(sequence)) {
+            let p = p_value(sequence, pair);
             assert!(p > level, "{} coordinates {pair:?}: p {p}", sequence.name());
         }
     }

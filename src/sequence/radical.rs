@@ -175,9 +175,9 @@ mod tests {
     }
 
     #[test]
-    fn fractions_just_below_a_64_bit_number_are_not_rounded_up_or_down() {
-        // The worst case: mirrored index R with R 2^64 = -1 modulo b^m, so phi lies b^-m 2^-64 below a 64-bit fraction.
-        // Without the long division most of these come out one too small or one too large.
+    fn fractions_next_to_a_64_bit_number_fall_on_their_side_of_it() {
+        // The worst case: a mirrored index R with R 2^64 = k modulo b^m, k a small number of either sign, so that phi lies
+        // k b^-m 2^-64 beside a 64-bit fraction. Without the long division those just above come out one too small.
         for &base in &PRIMES[1..] {
             let radix = plain(base);
             let mut power = u128::from(base);
@@ -186,8 +186,8 @@ mod tests {
                 power *= u128::from(base);
                 digits += 1;
             }
-            for below in [1u128, 2, 3, 4, 5, 6, 7, 10, 100] {
-                let mut mirrored = power - below;
+            for k in [1u128, 2, 3, 4, 5, 6, 7, 10, 100].into_iter().flat_map(|k| [k, power - k]) {
+                let mut mirrored = k;
                 for _ in 0..64 {
                     mirrored = if mirrored % 2 == 0 { mirrored / 2 } else { (mirrored + power) / 2 };
                 }
