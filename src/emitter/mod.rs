@@ -8,6 +8,7 @@
 
 pub mod collimated;
 pub mod isotropic;
+pub mod panel;
 pub mod photometric;
 
 use glam::DVec3;
@@ -20,6 +21,7 @@ use crate::sequence::Points;
 
 pub use collimated::Collimated;
 pub use isotropic::Isotropic;
+pub use panel::Panel;
 pub use photometric::Photometric;
 
 /// The start of a photon.
@@ -40,6 +42,8 @@ pub enum Emitter {
     Isotropic(Isotropic),
     /// A beam of parallel light.
     Collimated(Collimated),
+    /// A Lambertian rectangle.
+    Panel(Panel),
 }
 
 impl Emitter {
@@ -49,6 +53,7 @@ impl Emitter {
             Self::Photometric(e) => e.flux_lm(),
             Self::Isotropic(e) => e.flux_lm,
             Self::Collimated(e) => e.flux_lm,
+            Self::Panel(e) => e.flux_lm(),
         }
     }
 
@@ -59,15 +64,18 @@ impl Emitter {
             Self::Photometric(e) => e.emit(u, coordinates),
             Self::Isotropic(e) => e.emit(u, coordinates),
             Self::Collimated(e) => e.emit(u, coordinates),
+            Self::Panel(e) => e.emit(u, coordinates),
         }
     }
 
-    /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section.
+    /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section or of a
+    /// panel.
     pub fn centre(&self) -> DVec3 {
         match self {
             Self::Photometric(e) => e.position(),
             Self::Isotropic(e) => e.position,
             Self::Collimated(e) => e.centre,
+            Self::Panel(e) => e.centre(),
         }
     }
 
@@ -75,7 +83,7 @@ impl Emitter {
     pub fn memory_bytes(&self) -> usize {
         match self {
             Self::Photometric(e) => size_of::<Photometric>() + e.grid().memory_bytes(),
-            Self::Isotropic(_) | Self::Collimated(_) => 0,
+            Self::Isotropic(_) | Self::Collimated(_) | Self::Panel(_) => 0,
         }
     }
 }
