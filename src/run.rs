@@ -12,6 +12,7 @@ use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_tota
 use crate::scene::Scene;
 use crate::sequence::Sequence;
 use crate::sequence::independent::IndependentPoints;
+use crate::sequence::other::OtherPoints;
 use crate::sequence::owen::OwenPoints;
 use crate::sequence::sobol::SobolPoints;
 use crate::tally::{Moments, Receivers};
@@ -259,7 +260,7 @@ pub fn trace(
         let mut replica = Traced::new(scene);
         for stage in stages(plan, replicate) {
             let how = How { reuse: plan.variant.reuses(), interrupt, progress };
-            let traced = trace_stage(scene, plan, replicate, stage, how, &receivers);
+            let traced = trace_stage(scene, plan, replicate, stage, how, &receivers)?;
             check_balance(&traced.ledger)?;
             if !traced.complete {
                 outcome.stopped_by = StoppedBy::Interrupt;
@@ -282,10 +283,7 @@ pub fn trace(
     if outcome.photons == 0 {
         return Err(Diagnostic::new(
             Kind::Interrupted,
-            format!(
-                "an interrupt before the first {} photons were traced",
-                plan.photons_per_replicate.min(FIRST_STAGE)
-            ),
+            format!("an interrupt before the first {} photons were traced", first_stage(plan)),
             "at least these for a result",
         ));
     }
@@ -297,14 +295,20 @@ pub fn trace(
 /// Photons of the first stage of the first replicate.
 const FIRST_STAGE: u64 = 1 << 10;
 
+fn first_stage(plan: &Plan) -> u64 {
+    let n = plan.photons_per_replicate;
+    if plan.sequence.needs_number() { n } else { n.min(FIRST_STAGE) }
+}
+
 /// The ranges of indices that a replicate is traced in, one after another.
 ///
 /// Within a range the order follows the first coordinate, so a part of it is a part of the emitter's directions, not a
 /// sample of them. The first replicate is therefore traced in ranges that double what there is: each end is that of a
-/// net of 2^m points, and an interrupted run falls back on the last. Later replicates count only as a whole.
+/// net of 2^m points, and an interrupted run falls back on the last. Later replicates count only as a whole, and so does
+/// the first of a sequence that is a set of n points: its first part is no sample either.
 fn stages(plan: &Plan, replicate: u32) -> Vec<Range<u64>> {
     let n = plan.photons_per_replicate;
-    let (mut start, mut end) = (0, if replicate == 0 { n.min(FIRST_STAGE) } else { n });
+    let (mut start, mut end) = (0, if replicate == 0 { first_stage(plan) } else { n });
     let mut stages = Vec::new();
     while start < n {
         stages.push(start..end);
@@ -361,15 +365,19 @@ fn trace_stage(
     stage: Range<u64>,
     how: How<'_>,
     receivers: &Receivers<'_>,
-) -> Traced {
+) -> Result<Traced> {
     let sink = || receivers.sink();
-    match plan.sequence {
+    Ok(match plan.sequence {
         Sequence::Independent => {
             trace_range(scene, &IndependentPoints::new(plan.seed, replicate), stage, how, sink)
         }
         Sequence::Sobol => trace_range(scene, &SobolPoints::new(), stage, how, sink),
         Sequence::SobolOwen => trace_range(scene, &OwenPoints::new(plan.seed, replicate), stage, how, sink),
-    }
+        other => {
+            let points = OtherPoints::new(other, plan.seed, replicate, Some(plan.photons_per_replicate))?;
+            trace_range(scene, &points, stage, how, sink)
+        }
+    })
 }
 
 #[cfg(test)]

@@ -75,7 +75,8 @@ pub struct RenderArgs {
     /// Algorithm variant: qmc-inverse-reuse (default) or qmc-inverse.
     #[arg(long, value_name = "V")]
     pub variant: Option<String>,
-    /// Point sequence: sobol-owen (default), sobol or independent.
+    /// Point sequence: sobol-owen (default), sobol, sobol-shift, independent, halton, halton-faure, hammersley, lattice, weyl or
+    /// kronecker, the last six also with "-rotation" for a seed; jittered, latin-hypercube.
     #[arg(long, value_name = "S")]
     pub sequence: Option<String>,
     /// Seed of the randomisation [default: the scene's, else 1].
