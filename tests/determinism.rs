@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
+use caustix::bsdf::Grey;
 use caustix::image::exr::{Maps, read_maps};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
@@ -244,7 +245,7 @@ fn a_photon_lost_on_purpose_is_seen() {
             ledger.begin(emitter);
             let mut exceptions = Exceptions::default();
             let start = scene.start(emitter);
-            let end = walk(&scene, emission, start, &mut coordinates, &mut Nothing, &mut exceptions);
+            let end = walk(&scene, emission, start, Grey, &mut coordinates, &mut Nothing, &mut exceptions);
             if doctored != Some(index) {
                 ledger.end(end);
             }

@@ -8,6 +8,7 @@
 
 pub mod collimated;
 pub mod isotropic;
+pub mod panel;
 pub mod photometric;
 
 use glam::DVec3;
@@ -23,6 +24,7 @@ use crate::sequence::Points;
 
 pub use collimated::Collimated;
 pub use isotropic::Isotropic;
+pub use panel::Panel;
 pub use photometric::Photometric;
 
 /// The start of a photon.
@@ -43,6 +45,8 @@ pub enum Emitter {
     Isotropic(Isotropic),
     /// A beam of parallel light.
     Collimated(Collimated),
+    /// A Lambertian rectangle.
+    Panel(Panel),
 }
 
 impl Emitter {
@@ -52,6 +56,7 @@ impl Emitter {
             Self::Photometric(e) => e.flux_lm(),
             Self::Isotropic(e) => e.flux_lm,
             Self::Collimated(e) => e.flux_lm,
+            Self::Panel(e) => e.flux_lm(),
         }
     }
 
@@ -71,22 +76,26 @@ impl Emitter {
             }
             (Self::Isotropic(e), _) => Some(e.emit(u, coordinates)),
             (Self::Collimated(e), _) => Some(e.emit(u, coordinates)),
+            (Self::Panel(e), _) => Some(e.emit(u, coordinates)),
         }
     }
 
-    /// Continuous coordinates of an emission: all of these emit from two.
+    /// Continuous coordinates of an emission: two for a direction or a place, four for both.
     pub const fn continuous_coordinates(&self) -> f64 {
         match self {
             Self::Photometric(_) | Self::Isotropic(_) | Self::Collimated(_) => 2.0,
+            Self::Panel(_) => 4.0,
         }
     }
 
-    /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section.
+    /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section or of a
+    /// panel.
     pub fn centre(&self) -> DVec3 {
         match self {
             Self::Photometric(e) => e.position(),
             Self::Isotropic(e) => e.position,
             Self::Collimated(e) => e.centre,
+            Self::Panel(e) => e.centre(),
         }
     }
 
@@ -94,7 +103,7 @@ impl Emitter {
     pub fn memory_bytes(&self) -> usize {
         match self {
             Self::Photometric(e) => size_of::<Photometric>() + e.grid().memory_bytes(),
-            Self::Isotropic(_) | Self::Collimated(_) => 0,
+            Self::Isotropic(_) | Self::Collimated(_) | Self::Panel(_) => 0,
         }
     }
 }
@@ -144,6 +153,7 @@ impl Emitters {
             Emitter::Photometric(e) => e.emit(u, coordinates, Solver::DEFAULT),
             Emitter::Isotropic(e) => e.emit(u, coordinates),
             Emitter::Collimated(e) => e.emit(u, coordinates),
+            Emitter::Panel(e) => e.emit(u, coordinates),
         };
         (which, emission)
     }
@@ -176,7 +186,7 @@ impl<'e> WeightedEmitters<'e> {
     pub fn new(emitters: &'e Emitters) -> Result<Self> {
         let map = |emitter: &Emitter| match emitter {
             Emitter::Photometric(e) => UniformMap::new(e.grid()).map(Some),
-            Emitter::Isotropic(_) | Emitter::Collimated(_) => Ok(None),
+            Emitter::Isotropic(_) | Emitter::Collimated(_) | Emitter::Panel(_) => Ok(None),
         };
         Ok(Self { emitters, maps: emitters.emitters.iter().map(map).collect::<Result<_>>()? })
     }
@@ -190,6 +200,7 @@ impl<'e> WeightedEmitters<'e> {
             (Emitter::Photometric(e), None) => (e.emit(u, coordinates, Solver::DEFAULT), 1.0),
             (Emitter::Isotropic(e), _) => (e.emit(u, coordinates), 1.0),
             (Emitter::Collimated(e), _) => (e.emit(u, coordinates), 1.0),
+            (Emitter::Panel(e), _) => (e.emit(u, coordinates), 1.0),
         };
         (which, emission, weight)
     }

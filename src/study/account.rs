@@ -4,7 +4,7 @@
 //! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
 //! integrals.
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, Grey, Rgb};
 use crate::emitter::Emitter;
 use crate::error::Result;
 use crate::run::Algorithm;
@@ -106,7 +106,12 @@ impl UsePoints for Count<'_> {
             let (emitter, emission) = scene.emitters.emit(&mut chooser.inner);
             let mut sink = Arrivals { scene, events: Events::default() };
             let start = scene.start(emitter);
-            let end = walk(scene, emission, start, &mut chooser, &mut sink, &mut Exceptions::default());
+            let exceptions = &mut Exceptions::default();
+            let end = if scene.is_coloured() {
+                walk(scene, emission, start, Rgb::WHITE, &mut chooser, &mut sink, exceptions)
+            } else {
+                walk(scene, emission, start, Grey, &mut chooser, &mut sink, exceptions)
+            };
             let mut events = sink.events;
             match end {
                 End::Absorbed(surface) => {
@@ -144,8 +149,8 @@ struct Arrivals<'s> {
     events: Events,
 }
 
-impl Sink for Arrivals<'_> {
-    fn arrive(&mut self, arrival: &Arrival<'_>) {
+impl<T> Sink<T> for Arrivals<'_> {
+    fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         match self.scene.bsdf(arrival.hit.surface) {
             Bsdf::Dielectric(_) | Bsdf::Mirror { .. } => self.events.specular += 1.0,
             Bsdf::Lambertian { .. } => self.events.scattered += 1.0,

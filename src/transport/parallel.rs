@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use crate::bsdf::{Grey, Rgb, Throughput};
 use crate::sample::coordinates::Coordinates;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -102,11 +103,28 @@ impl Order {
     }
 }
 
-/// Traces the photons of these indices; `sink` makes one handle a batch, all of which add to the same sums.
-pub fn trace_range<P: Points, S: Sink>(
+/// Traces the photons of these indices; `sink` makes one handle a batch, all of which add to the same sums. Whether they
+/// carry colour is decided here, once, so that a scene without it is traced by a walk without it.
+pub fn trace_range<P: Points, S: Sink<Grey> + Sink<Rgb>>(
     scene: &Scene,
     points: &P,
     range: Range<u64>,
+    how: How<'_>,
+    sink: impl Fn() -> S + Sync,
+) -> Traced {
+    if scene.is_coloured() {
+        trace_carrying(scene, points, range, Rgb::WHITE, how, sink)
+    } else {
+        trace_carrying(scene, points, range, Grey, how, sink)
+    }
+}
+
+/// The same for photons that start with this throughput.
+pub fn trace_carrying<P: Points, S: Sink<T>, T: Throughput>(
+    scene: &Scene,
+    points: &P,
+    range: Range<u64>,
+    carried: T,
     how: How<'_>,
     sink: impl Fn() -> S + Sync,
 ) -> Traced {
@@ -116,7 +134,7 @@ pub fn trace_range<P: Points, S: Sink>(
         .batches()
         .fold(empty, |mut traced, slots| {
             let before = traced.ledger.total_emitted();
-            trace_batch(scene, points, order.indices(slots), how, &mut sink(), &mut traced);
+            trace_batch(scene, points, order.indices(slots), carried, how, &mut sink(), &mut traced);
             (how.progress)(traced.ledger.total_emitted() - before);
             traced
         })
@@ -126,10 +144,11 @@ pub fn trace_range<P: Points, S: Sink>(
         })
 }
 
-fn trace_batch<P: Points, S: Sink>(
+fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     points: &P,
     indices: impl Iterator<Item = u64>,
+    carried: T,
     how: How<'_>,
     sink: &mut S,
     traced: &mut Traced,
@@ -146,7 +165,8 @@ fn trace_batch<P: Points, S: Sink>(
         };
         traced.ledger.begin(emitter);
         let exceptions = &mut traced.census.exceptions;
-        let end = walk(scene, emission, scene.start(emitter), &mut coordinates, sink, exceptions);
+        let start = scene.start(emitter);
+        let end = walk(scene, emission, start, carried, &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
         traced.census.count(coordinates.drawn(), coordinates.drawn_for());
     }
