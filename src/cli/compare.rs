@@ -223,7 +223,7 @@ impl Job<'_> {
         if runs.iter().all(Vec::is_empty) {
             return Ok(None);
         }
-        let events = Events::count(self.scene)?;
+        let events = Events::count(self.scene);
         let asked = &self.asked;
         let variant = |(algorithm, runs): (&Algorithm, Vec<Run>)| VariantResult {
             name: algorithm.name(),

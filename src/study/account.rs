@@ -6,13 +6,12 @@
 
 use crate::bsdf::{Bsdf, Grey, Rgb};
 use crate::emitter::Emitter;
-use crate::error::Result;
 use crate::run::Algorithm;
-use crate::run::tracer::{PointSet, UsePoints};
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::{Rejection, Sampling};
 use crate::scene::Scene;
-use crate::sequence::{Points, Sequence};
+use crate::sequence::Points;
+use crate::sequence::independent::IndependentPoints;
 use crate::transport::census::Exceptions;
 use crate::transport::{Arrival, End, Sink, walk};
 
@@ -40,12 +39,8 @@ pub struct Events {
 
 impl Events {
     /// Counts the events of the scene's first 2^16 photons under independent points.
-    ///
-    /// # Errors
-    /// None that depends on the scene.
-    pub fn count(scene: &Scene) -> Result<Self> {
-        let points = PointSet { sequence: Sequence::Independent, seed: 0, replicate: 0, number: PHOTONS };
-        points.provide(Count { scene })
+    pub fn count(scene: &Scene) -> Self {
+        count(scene, &IndependentPoints::new(0, 0))
     }
 
     /// The account of an algorithm, coordinates a photon.
@@ -91,55 +86,46 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
         .sum()
 }
 
-struct Count<'s> {
-    scene: &'s Scene,
-}
-
-impl UsePoints for Count<'_> {
-    type Output = Events;
-
-    fn with<P: Points>(self, points: &P) -> Events {
-        let scene = self.scene;
-        let mut sum = Events::default();
-        for index in 0..PHOTONS {
-            let mut chooser = Watched::new(Coordinates::new(points, index, true));
-            let (emitter, emission) = scene.emitters.emit(&mut chooser.inner);
-            let mut sink = Arrivals { scene, events: Events::default() };
-            let start = scene.start(emitter);
-            let exceptions = &mut Exceptions::default();
-            let end = if scene.is_coloured() {
-                walk(scene, emission, start, Rgb::WHITE, &mut chooser, &mut sink, exceptions)
-            } else {
-                walk(scene, emission, start, Grey, &mut chooser, &mut sink, exceptions)
-            };
-            let mut events = sink.events;
-            match end {
-                End::Absorbed(surface) => {
-                    // The last arrival was no scattering.
-                    events.end = 2.0;
-                    match scene.bsdf(surface) {
-                        Bsdf::Lambertian { .. } => events.scattered -= 1.0,
-                        Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => {}
-                    }
+fn count<P: Points>(scene: &Scene, points: &P) -> Events {
+    let mut sum = Events::default();
+    for index in 0..PHOTONS {
+        let mut chooser = Watched::new(Coordinates::new(points, index, true));
+        let (emitter, emission) = scene.emitters.emit(&mut chooser.inner);
+        let mut sink = Arrivals { scene, events: Events::default() };
+        let start = scene.start(emitter);
+        let exceptions = &mut Exceptions::default();
+        let end = if scene.is_coloured() {
+            walk(scene, emission, start, Rgb::WHITE, &mut chooser, &mut sink, exceptions)
+        } else {
+            walk(scene, emission, start, Grey, &mut chooser, &mut sink, exceptions)
+        };
+        let mut events = sink.events;
+        match end {
+            End::Absorbed(surface) => {
+                // The last arrival was no scattering.
+                events.end = 2.0;
+                match scene.bsdf(surface) {
+                    Bsdf::Lambertian { .. } => events.scattered -= 1.0,
+                    Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => {}
                 }
-                End::Escaped | End::Killed => events.end = 1.0,
             }
-            sum.specular += events.specular;
-            sum.scattered += events.scattered;
-            sum.end += events.end;
-            sum.decisions += chooser.decisions;
-            sum.shared += chooser.shared;
-            sum.continuous += chooser.continuous;
+            End::Escaped | End::Killed => events.end = 1.0,
         }
-        let n = PHOTONS as f64;
-        Events {
-            specular: sum.specular / n,
-            scattered: sum.scattered / n,
-            end: sum.end / n,
-            decisions: sum.decisions / n,
-            shared: sum.shared / n,
-            continuous: sum.continuous / n,
-        }
+        sum.specular += events.specular;
+        sum.scattered += events.scattered;
+        sum.end += events.end;
+        sum.decisions += chooser.decisions;
+        sum.shared += chooser.shared;
+        sum.continuous += chooser.continuous;
+    }
+    let n = PHOTONS as f64;
+    Events {
+        specular: sum.specular / n,
+        scattered: sum.scattered / n,
+        end: sum.end / n,
+        decisions: sum.decisions / n,
+        shared: sum.shared / n,
+        continuous: sum.continuous / n,
     }
 }
 

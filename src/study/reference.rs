@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::emitter::WeightedEmitters;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::run::tracer::{PointSet, UsePoints};
+use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::{Points, Sequence};
@@ -92,14 +92,15 @@ pub fn trace_replicate(
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
     let points =
         PointSet { sequence: plan.sequence, seed: plan.seed, replicate, number: plan.photons_per_replicate };
-    let complete = points.provide(Replicate {
+    let complete = Replicate {
         scene,
         emitters: WeightedEmitters::new(&scene.emitters)?,
         receivers: &receivers,
         how,
         photons: plan.photons_per_replicate,
         units: plan.units_per_photon(),
-    })?;
+    }
+    .trace(&points.any()?);
     let counts = (0..grids.receivers.len()).flat_map(|i| receivers.counts(i).iter());
     Ok(complete.then(|| counts.collect()))
 }
@@ -113,10 +114,8 @@ struct Replicate<'a, 's> {
     units: f64,
 }
 
-impl UsePoints for Replicate<'_, '_> {
-    type Output = bool;
-
-    fn with<P: Points>(self, points: &P) -> bool {
+impl Replicate<'_, '_> {
+    fn trace<P: Points>(self, points: &P) -> bool {
         let sink = || self.receivers.fixed_point_sink(self.units);
         trace_weighted(self.scene, &self.emitters, points, 0..self.photons, self.how, sink)
     }

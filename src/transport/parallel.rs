@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::bsdf::{Grey, Rgb, Throughput};
+use crate::bsdf::Throughput;
 use crate::sample::coordinates::Coordinates;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -103,24 +103,9 @@ impl Order {
     }
 }
 
-/// Traces the photons of these indices; `sink` makes one handle a batch, all of which add to the same sums. Whether they
-/// carry colour is decided here, once, so that a scene without it is traced by a walk without it.
-pub fn trace_range<P: Points, S: Sink<Grey> + Sink<Rgb>>(
-    scene: &Scene,
-    points: &P,
-    range: Range<u64>,
-    how: How<'_>,
-    sink: impl Fn() -> S + Sync,
-) -> Traced {
-    if scene.is_coloured() {
-        trace_carrying(scene, points, range, Rgb::WHITE, how, sink)
-    } else {
-        trace_carrying(scene, points, range, Grey, how, sink)
-    }
-}
-
-/// The same for photons that start with this throughput.
-pub fn trace_carrying<P: Points, S: Sink<T>, T: Throughput>(
+/// Traces the photons of these indices, each of which starts with the throughput `carried`: [`crate::bsdf::Grey`] unless the
+/// scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
+pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     points: &P,
     range: Range<u64>,
