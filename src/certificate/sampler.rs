@@ -141,6 +141,7 @@ fn draw<P: Points>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::emitter::photometric::grid_axes;
     use crate::emitter::{Emitter, Emitters, Photometric};
     use crate::photometry::lm63;
     use crate::sequence::owen::OwenPoints;
@@ -149,8 +150,9 @@ mod tests {
     fn draws_are_the_directions_of_photons() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/ies/wavy_glass.ies");
         let photometry = lm63::read(file).unwrap();
-        // Aim and up for which the axes of the grid are those of the world.
-        let lamp = Photometric::new(&photometry, DVec3::ZERO, DVec3::Z, DVec3::X, None).unwrap();
+        let (aim, up) = (DVec3::new(0.3, -0.7, -0.5), DVec3::new(0.2, 0.1, 1.0));
+        let axes = grid_axes(photometry.web.photometric_type, aim, up).unwrap();
+        let lamp = Photometric::new(&photometry, DVec3::ZERO, aim, up, None).unwrap();
         let grid = lamp.grid().clone();
         let emitters = Emitters::new(vec![Emitter::Photometric(Box::new(lamp))]).unwrap();
         for name in ["qmc", "qmc:table", "qmc:next-point", "qmc-inverse", "qmc-inverse-reuse"] {
@@ -165,7 +167,7 @@ mod tests {
             let effort = sample(&grid, &algorithm, 7, 3, 5000, |block| {
                 for sampled in block {
                     let (direction, drawn) = photons.next().unwrap();
-                    assert!((direction - sampled.direction).length() < 1e-15, "{name}");
+                    assert_eq!(direction, axes * sampled.direction, "{name}");
                     assert_eq!(sampled.draw.coordinates, drawn);
                     let Draw { theta_rad, phi_rad, .. } = sampled.draw;
                     let (sin, cos) = theta_rad.sin_cos();
