@@ -58,6 +58,7 @@ pub mod transport;
 pub mod tally;
 pub mod estimate;
 pub mod run;
+pub mod study;
 pub mod image;
 pub mod report;
 pub mod cli;
