@@ -93,11 +93,11 @@ impl Mesh {
 
     /// The box from `min` to `max`, its faces cut in this many parts along x, y and z; front: outside.
     fn block(&mut self, min: Point, max: Point, [nx, ny, nz]: [usize; 3]) {
-        let along = |axis: usize| -> Point {
-            std::array::from_fn(|k| if k == axis { max[k] - min[k] } else { 0.0 })
-        };
+        let along =
+            |axis: usize| -> Point { std::array::from_fn(|k| if k == axis { max[k] - min[k] } else { 0.0 }) };
         let (x, y, z) = ((along(0), nx), (along(1), ny), (along(2), nz));
-        let beyond = |axis: usize| -> Point { std::array::from_fn(|k| if k == axis { max[k] } else { min[k] }) };
+        let beyond =
+            |axis: usize| -> Point { std::array::from_fn(|k| if k == axis { max[k] } else { min[k] }) };
         self.grid(min, y, x);
         self.grid(beyond(2), x, y);
         self.grid(min, x, z);

@@ -5,6 +5,7 @@ pub mod candela;
 pub mod json;
 pub mod maps;
 pub mod polar;
+pub mod room;
 pub mod statistics;
 pub mod text;
 

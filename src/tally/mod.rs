@@ -10,4 +10,4 @@ pub mod weighted;
 
 pub use counts::{Counts, Moments};
 pub use receiver::{ReceiverSink, Receivers};
-pub use weighted::{WeightedReceivers, ChannelSink};
+pub use weighted::{ChannelSink, WeightedReceivers};

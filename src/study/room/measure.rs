@@ -92,8 +92,12 @@ pub fn measure(
 ) -> Result<Measurement> {
     let reflections = reflections(scene)?;
     let points = OtherPoints::new(task.sequence, task.seed, 0, Some(task.photons))?;
-    let tally =
-        WeightedReceivers::new(&scene.geometry, &scene.receivers, task.photons, arrivals(scene, reflections))?;
+    let tally = WeightedReceivers::new(
+        &scene.geometry,
+        &scene.receivers,
+        task.photons,
+        arrivals(scene, reflections),
+    )?;
     let started = Instant::now();
     let traced = trace(scene, &points, task, reflections, How { reuse: true, interrupt, progress }, &tally);
     if !traced.complete {

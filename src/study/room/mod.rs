@@ -21,13 +21,8 @@ pub use measure::{Measurement, Task, measure};
 pub use tables::{Between, Deviation, Row, Value};
 
 /// The sequences that are compared: the paper's four, and Sobol'.
-pub const SEQUENCES: [Sequence; 5] = [
-    Sequence::Independent,
-    Sequence::Halton,
-    Sequence::HaltonFaure,
-    Sequence::Hammersley,
-    Sequence::Sobol,
-];
+pub const SEQUENCES: [Sequence; 5] =
+    [Sequence::Independent, Sequence::Halton, Sequence::HaltonFaure, Sequence::Hammersley, Sequence::Sobol];
 
 /// What is measured.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -92,9 +92,8 @@ impl Row {
 impl RoomStudy {
     /// The deviation of two numbers of photons, by their places in the ladder, of a sequence.
     pub fn deviation(&self, sequence: usize, few: usize, many: usize) -> Value {
-        let of = |ladder: &super::Ladder| {
-            deviation(&self.areas_m2, &ladder[few].radiance, &ladder[many].radiance)
-        };
+        let of =
+            |ladder: &super::Ladder| deviation(&self.areas_m2, &ladder[few].radiance, &ladder[many].radiance);
         Value::of(&self.runs(sequence).iter().map(of).collect::<Vec<_>>())
     }
 
