@@ -5,6 +5,7 @@ mod support;
 
 use caustix::certificate::sampler::{made_from, sample};
 use caustix::certificate::{Certificate, Density, Draw, Judge, PointKind, REPLICATES, TestName};
+use caustix::math::solve::Solver;
 use caustix::photometry::{Photometry, lm63};
 use caustix::run::{Algorithm, Variant};
 use caustix::sample::choose::Reusable;
@@ -200,8 +201,8 @@ impl<'g> Spoilt<'g> {
         if self.wrong == Wrong::NoDivision {
             u_theta = (to_unit_f64(u1) - self.shares[cell].0).clamp(0.0, 1.0 - f64::EPSILON);
         }
-        let mut at = self.grid.place(cell, u_theta, u2);
-        let full = self.grid.place(cell, 0.0, 0.0);
+        let mut at = self.grid.place(cell, u_theta, u2, Solver::DEFAULT);
+        let full = self.grid.place(cell, 0.0, 0.0, Solver::DEFAULT);
         if self.wrong == Wrong::NoSine {
             at.theta = self.without_sine(full.theta, cell, u_theta);
         }
@@ -213,9 +214,9 @@ impl<'g> Spoilt<'g> {
 
     /// theta by the marginal of the bilinear candela of this cell, linear from a to b over its width.
     fn without_sine(&self, theta: f64, cell: usize, u: f64) -> f64 {
-        let last = self.grid.place(cell, 1.0 - f64::EPSILON, 0.5);
+        let last = self.grid.place(cell, 1.0 - f64::EPSILON, 0.5, Solver::DEFAULT);
         let width = last.theta - theta;
-        let middle = self.grid.place(cell, 0.5, 0.5).phi;
+        let middle = self.grid.place(cell, 0.5, 0.5, Solver::DEFAULT).phi;
         let inside = |x: f64| self.grid.value(theta + x * width, middle);
         let (a, b) = (inside(1e-9), inside(1.0 - 1e-9));
         let x = if (b - a).abs() < 1e-9 * (a + b) {

@@ -7,6 +7,7 @@ pub mod json;
 pub mod maps;
 pub mod parts;
 pub mod polar;
+pub mod room;
 pub mod statistics;
 pub mod text;
 

@@ -45,54 +45,20 @@ impl PointSet {
     /// # Errors
     /// A sequence that cannot have this many points.
     pub fn provide<U: UsePoints>(&self, user: U) -> Result<U::Output> {
-        Ok(match self.any()? {
-            AnyPoints::Independent(points) => user.with(&points),
-            AnyPoints::Sobol(points) => user.with(&points),
-            AnyPoints::SobolOwen(points) => user.with(&points),
-            AnyPoints::Other(points) => user.with(&points),
+        Ok(match self.sequence {
+            Sequence::Independent => user.with(&IndependentPoints::new(self.seed, self.replicate)),
+            Sequence::Sobol => user.with(&SobolPoints::new()),
+            Sequence::SobolOwen => user.with(&OwenPoints::new(self.seed, self.replicate)),
+            _ => user.with(&self.any()?),
         })
     }
 
-    /// The points behind one type.
+    /// The points behind one type, for uses that are not worth a walk compiled for each sequence.
     ///
     /// # Errors
     /// A sequence that cannot have this many points.
-    pub fn any(&self) -> Result<AnyPoints> {
-        Ok(match self.sequence {
-            Sequence::Independent => {
-                AnyPoints::Independent(IndependentPoints::new(self.seed, self.replicate))
-            }
-            Sequence::Sobol => AnyPoints::Sobol(SobolPoints::new()),
-            Sequence::SobolOwen => AnyPoints::SobolOwen(OwenPoints::new(self.seed, self.replicate)),
-            other => AnyPoints::Other(OtherPoints::new(other, self.seed, self.replicate, Some(self.number))?),
-        })
-    }
-}
-
-/// The points of any sequence behind one type, chosen anew for every coordinate: for uses that are not worth a walk compiled
-/// for each sequence.
-#[derive(Debug, Clone)]
-#[allow(clippy::large_enum_variant)] // One of them exists at a time, and none is moved after it is made.
-pub enum AnyPoints {
-    /// See [`Sequence::Independent`].
-    Independent(IndependentPoints),
-    /// See [`Sequence::Sobol`].
-    Sobol(SobolPoints),
-    /// See [`Sequence::SobolOwen`].
-    SobolOwen(OwenPoints),
-    /// Every other sequence.
-    Other(OtherPoints),
-}
-
-impl Points for AnyPoints {
-    #[inline]
-    fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
-        match self {
-            Self::Independent(points) => points.coordinate(index, coordinate),
-            Self::Sobol(points) => points.coordinate(index, coordinate),
-            Self::SobolOwen(points) => points.coordinate(index, coordinate),
-            Self::Other(points) => points.coordinate(index, coordinate),
-        }
+    pub fn any(&self) -> Result<OtherPoints> {
+        OtherPoints::new(self.sequence, self.seed, self.replicate, Some(self.number))
     }
 }
 

@@ -10,4 +10,4 @@ pub mod weighted;
 
 pub use counts::{Counts, Moments};
 pub use receiver::{FixedPointSink, ReceiverSink, Receivers};
-pub use weighted::{WeightedReceivers, WeightedSink};
+pub use weighted::{ChannelSink, WeightedReceivers};

@@ -73,8 +73,8 @@ impl<'s> WeightedReceivers<'s> {
     }
 
     /// A handle for one batch of photons; all handles add to the same sums.
-    pub fn sink(&self) -> WeightedSink<'_, 's> {
-        WeightedSink { receivers: self, scale: self.scale() }
+    pub fn sink(&self) -> ChannelSink<'_, 's> {
+        ChannelSink { receivers: self, scale: self.scale() }
     }
 
     /// Number of cells of all receivers, one after another.
@@ -109,12 +109,12 @@ impl<'s> WeightedReceivers<'s> {
 
 /// Adds weighted arrivals to a scene's receivers.
 #[derive(Debug, Clone, Copy)]
-pub struct WeightedSink<'r, 's> {
+pub struct ChannelSink<'r, 's> {
     receivers: &'r WeightedReceivers<'s>,
     scale: f64,
 }
 
-impl Sink<Fixed> for WeightedSink<'_, '_> {
+impl Sink<Fixed> for ChannelSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, Fixed>) {
         let all = self.receivers;

@@ -1,0 +1,154 @@
+//! The experiment of S. Heinrich and A. Keller, "Quasi-Monte Carlo Methods in Computer Graphics, Part II: The Radiance
+//! Equation" (Kaiserslautern, 1994), section 5: how well do point sequences find the light that arrives at every triangle
+//! of a closed diffuse scene after at most M reflections?
+//!
+//! Every photon carries a weight per channel through exactly M reflections, without roulette, on 2 M + 4 coordinates; at each
+//! of its M + 1 arrivals the weight is added to the triangle ([`measure()`]). A number of photons is compared with a larger one
+//! of the same sequence, and the largest of the sequences with each other ([`tables`]), in the paper's norm ([`deviation()`]).
+
+pub mod deviation;
+pub mod measure;
+pub mod tables;
+
+use std::sync::atomic::AtomicBool;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::scene::Scene;
+use crate::sequence::Sequence;
+
+pub use deviation::deviation;
+pub use measure::{Measurement, Task, measure};
+pub use tables::{Between, Deviation, Row, Value};
+
+/// The sequences that are compared: the paper's four, and Sobol'.
+pub const SEQUENCES: [Sequence; 5] =
+    [Sequence::Independent, Sequence::Halton, Sequence::HaltonFaure, Sequence::Hammersley, Sequence::Sobol];
+
+/// What is measured.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Options {
+    /// Numbers of photons, rising, at least two.
+    pub ladder: Vec<u64>,
+    /// Seeds of the random sequence, at least one; the others have none.
+    pub seeds: Vec<u64>,
+}
+
+impl Options {
+    /// 10^4, 10^5 and 10^6 photons, in full also 10^7, as in the paper; four seeds.
+    pub fn new(full: bool) -> Self {
+        let mut ladder = vec![10_000, 100_000, 1_000_000];
+        if full {
+            ladder.push(10_000_000);
+        }
+        Self { ladder, seeds: vec![1, 2, 3, 4] }
+    }
+
+    /// Everything that is to be measured, the quickest first.
+    pub fn tasks(&self) -> Vec<Task> {
+        let mut tasks = Vec::new();
+        for &photons in &self.ladder {
+            for sequence in SEQUENCES {
+                let seeds = if sequence.is_randomised() { &self.seeds[..] } else { &[0] };
+                tasks.extend(seeds.iter().map(|&seed| Task { sequence, seed, photons }));
+            }
+        }
+        tasks
+    }
+
+    /// Photons of all tasks.
+    pub fn photons(&self) -> u64 {
+        self.tasks().iter().map(|t| t.photons).sum()
+    }
+}
+
+/// Measurements of one sequence with one seed, one for each number of photons of the ladder.
+pub type Ladder = Vec<Measurement>;
+
+/// Everything measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RoomStudy {
+    /// The scene file's path as given.
+    pub scene_name: String,
+    /// SHA-256 of its text.
+    pub scene_sha256: String,
+    /// Reflections of every photon, M.
+    pub reflections: u32,
+    /// Areas of the receivers' cells, m2: one receiver after another.
+    pub areas_m2: Vec<f64>,
+    /// What was asked for.
+    pub options: Options,
+    /// By sequence, in the order of [`SEQUENCES`], then by seed.
+    runs: Vec<Vec<Ladder>>,
+}
+
+impl RoomStudy {
+    /// The study of these measurements, in any order.
+    ///
+    /// # Errors
+    /// A scene without `[compare]`; options without two numbers of photons or a seed; a measurement of [`Options::tasks`] that
+    /// is not there or has another number of cells.
+    pub fn new(scene: &Scene, options: &Options, measurements: &[Measurement]) -> Result<Self> {
+        let rising = options.ladder.windows(2).all(|w| w[0] < w[1]);
+        if options.ladder.len() < 2 || !rising || options.seeds.is_empty() {
+            return Err(Diagnostic::new(
+                Kind::Range,
+                format!("photons {:?} and seeds {:?}", options.ladder, options.seeds),
+                "two or more rising numbers of photons, and a seed",
+            ));
+        }
+        let areas_m2 = measure::areas_m2(scene);
+        let find = |task: Task| {
+            let found = measurements.iter().find(|m| m.is_of(&task) && m.radiance.len() == areas_m2.len());
+            found.cloned().ok_or_else(|| {
+                Diagnostic::new(Kind::Missing, format!("no measurement of {task}"), "one of every task")
+            })
+        };
+        let ladder = |sequence, seed| -> Result<Ladder> {
+            options.ladder.iter().map(|&photons| find(Task { sequence, seed, photons })).collect()
+        };
+        let of_sequence = |sequence: Sequence| -> Result<Vec<Ladder>> {
+            let seeds = if sequence.is_randomised() { &options.seeds[..] } else { &[0] };
+            seeds.iter().map(|&seed| ladder(sequence, seed)).collect()
+        };
+        Ok(Self {
+            scene_name: scene.identity.name.clone(),
+            scene_sha256: scene.identity.sha256.clone(),
+            reflections: measure::reflections(scene)?,
+            runs: SEQUENCES.into_iter().map(of_sequence).collect::<Result<_>>()?,
+            areas_m2,
+            options: options.clone(),
+        })
+    }
+
+    /// The measurements of a sequence of [`SEQUENCES`], by seed.
+    pub fn runs(&self, sequence: usize) -> &[Ladder] {
+        &self.runs[sequence]
+    }
+
+    /// Whether in every measurement no photon left the scene.
+    pub fn is_closed(&self) -> bool {
+        self.runs.iter().flatten().flatten().all(|m| m.escaped == 0)
+    }
+}
+
+/// Measures everything, one task after another, each over all threads. `progress` is told the number of photons after
+/// each batch.
+///
+/// A caller that keeps what is finished goes through [`Options::tasks`] itself, calls [`measure()`] for what it does not have
+/// yet, and makes a [`RoomStudy`] of all.
+///
+/// # Errors
+/// Those of [`measure()`] and [`RoomStudy::new`].
+pub fn run(
+    scene: &Scene,
+    options: &Options,
+    interrupt: &AtomicBool,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<RoomStudy> {
+    let measurements: Vec<Measurement> = options
+        .tasks()
+        .iter()
+        .map(|task| measure(scene, task, interrupt, progress))
+        .collect::<Result<_>>()?;
+    RoomStudy::new(scene, options, &measurements)
+}
