@@ -84,8 +84,9 @@ fn halton_in_bases_2_and_3_has_the_published_discrepancy() {
 
 #[test]
 fn low_discrepancy_is_low() {
-    // Of N independent points D* is about 0.6 to 2 times N^-1/2 (the 1-D Kolmogorov statistic exceeds 0.57 in 9 of 10 sets, 1.95
-    // in 1 of 1000; two dimensions add to it). 1009 is a prime, so jittered points have one row of strata and one coordinate left to chance.
+    // Of N independent points D* is about 0.6 to 2 times N^-1/2: the one-dimensional statistic of Kolmogorov exceeds 0.57 in
+    // nine of ten sets and 1.95 in one of a thousand, and the plane adds to it. 1009 is a prime, so jittered points have
+    // one row of strata and one coordinate left to chance.
     let of = |sequence, count| {
         let points = OtherPoints::new(sequence, 1, 0, Some(count)).unwrap();
         let found = star_discrepancy(&plane(&points, 0..count, [0, 1]));

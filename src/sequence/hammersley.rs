@@ -53,7 +53,7 @@ mod tests {
             assert_eq!(points.coordinate(i, 1), i.reverse_bits());
             assert_eq!(points.coordinate(i, 2), HaltonPoints::new().coordinate(i, 1));
         }
-        assert_eq!(to_unit_f64(points.coordinate(7, 0)), 0.699_999_999_999_999_95);
+        assert_eq!(to_unit_f64(points.coordinate(7, 0)), 0.7);
         assert_eq!(points.coordinate(13, 0), points.coordinate(3, 0));
     }
 

@@ -103,8 +103,8 @@ mod tests {
     fn harmonious_numbers_are_the_published_ones() {
         // Golden ratio, plastic number and the next ones: 1 / phi_d (M. Roberts; OEIS A001622, A060006, A060007, A160155).
         for (d, phi) in [
-            (1, 1.618_033_988_749_894_8),
-            (2, 1.324_717_957_244_746_0),
+            (1, 1.618_033_988_749_895),
+            (2, 1.324_717_957_244_746),
             (3, 1.220_744_084_605_759_5),
             (4, 1.167_303_978_261_418_7),
         ] {

@@ -74,7 +74,7 @@ mod tests {
         let number = 2000u64;
         for seed in 0..20 {
             let points = LatinPoints::new(seed, 0, NonZeroU64::new(number).unwrap());
-            let rank = |i, c| (u128::from(points.coordinate(i, c)) * u128::from(number) >> 64) as f64;
+            let rank = |i, c| ((u128::from(points.coordinate(i, c)) * u128::from(number)) >> 64) as f64;
             let middle = (number as f64 - 1.0) / 2.0;
             let product: f64 = (0..number).map(|i| (rank(i, 0) - middle) * (rank(i, 1) - middle)).sum();
             let variance = (number as f64).powi(2) / 12.0;

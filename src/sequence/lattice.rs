@@ -4,8 +4,9 @@
 //! "exod2_base2_m20" of R. Cools, F. Y. Kuo and D. Nuyens, "Constructing embedded lattice rules for multivariate
 //! integration", SIAM J. Sci. Comput. 28 (2006) 2162-2188, from D. Nuyens' Magic Point Shop. It was constructed for N =
 //! 2^m, m up to 20, minimising the worst-case error over all two-dimensional projections. Other N give a lattice too, but
-//! nobody searched for a good vector there, and a component that shares a factor with N takes fewer than N values. Above
-//! 2^20 the published search says nothing.
+//! nobody searched for a good vector there: with N = 16 000, z_1 / N is 2e-5 from 5 / 12 and the plane is filled in twelve
+//! lines, and a component that shares a factor with N takes fewer than N values. Above 2^20 the published search says
+//! nothing.
 
 use std::num::NonZeroU64;
 
