@@ -7,6 +7,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web, lm63};
 use caustix::sample::cell::{Cell, Row};
 use caustix::sample::coordinates::Coordinates;
@@ -101,7 +102,9 @@ fn cell_equation(criterion: &mut Criterion) {
             b.iter(|| work.iter().map(|(k, u)| solve(&cells[*k].0, &cells[*k].1, *u)).sum::<f64>());
         });
     };
-    solver("bracketed secant", &|row, cell, u| cell.sample_theta(row, u).s);
+    for method in Solver::ALL {
+        solver(method.name(), &|row, cell, u| cell.sample_theta(row, u, method).s);
+    }
     // The width of a cell is of order 0.1, so the one absolute tolerance of `roots` serves as a relative one here.
     let rule = || SimpleConvergency { eps: 1e-14, max_iter: 100 };
     solver("roots: Brent", &|row, cell, u| {

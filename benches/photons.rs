@@ -4,7 +4,7 @@
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 
-use caustix::run::{Algorithm, Plan, Settings, Variant, trace};
+use caustix::run::{Algorithm, Plan, Settings, trace};
 use caustix::scene::{Scene, build::build, description::Description};
 use caustix::sequence::Sequence;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -22,7 +22,7 @@ fn photons(c: &mut Criterion) {
     for (threads, label) in [(0, "all threads"), (1, "one thread")] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         for sequence in [Sequence::Independent, Sequence::Sobol, Sequence::SobolOwen] {
-            let algorithm = Algorithm { sequence, ..Variant::QmcInverseReuse.into() };
+            let algorithm = Algorithm { sequence, ..Algorithm::default() };
             let settings =
                 Settings { photons: Some(PHOTONS), replicates: Some(1), algorithm, ..Settings::default() };
             let plan = Plan::new(&settings).unwrap();

@@ -59,6 +59,7 @@ pub mod transport;
 pub mod tally;
 pub mod estimate;
 pub mod run;
+pub mod study;
 pub mod certificate;
 pub mod image;
 pub mod report;

@@ -4,6 +4,7 @@
 
 mod support;
 
+use caustix::math::solve::Solver;
 use caustix::sample::cell::{Cell, Row};
 use roots::{SimpleConvergency, find_root_brent};
 use support::quadrature::Gauss;
@@ -57,9 +58,12 @@ fn roots_agree_with_brents_method_on_the_quadrature() {
                 let mut stop = SimpleConvergency { eps: 1e-14, max_iter: 200 };
                 match find_root_brent(0.0, 1.0, f, &mut stop) {
                     Ok(x) => {
-                        let off = (cell.sample_theta(&row, u).s / row.width - x).abs();
-                        assert!(off <= 1e-10, "row {from}..{to}, {corners:?}, u {u}: {off:e} of the width");
-                        worst = worst.max(off);
+                        for solver in Solver::ALL {
+                            let off = (cell.sample_theta(&row, u, solver).s / row.width - x).abs();
+                            let name = solver.name();
+                            assert!(off <= 1e-10, "{name}, row {from}..{to}, {corners:?}, u {u}: {off:e}");
+                            worst = worst.max(off);
+                        }
                         compared += 1;
                     }
                     Err(_) => given_up += 1,

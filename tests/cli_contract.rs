@@ -142,7 +142,7 @@ fn impossible_requests_exit_1_and_say_what_is_required() {
         ("render --replicates 0", "0 replicates", "1 to 65536"),
         ("render --replicates 70000", "70000 replicates", "1 to 65536"),
         ("render --sequence sobol --replicates 8", "8 replicates", "one replicate"),
-        ("render --sequence halton", "--sequence halton", "independent, sobol, sobol-owen"),
+        ("render --sequence haltom", "--sequence haltom", "independent, sobol, sobol-owen"),
         ("render --variant qcm", "--variant qcm", "qmc-inverse, qmc-inverse-reuse"),
         ("render --threads 0 --photons 64", "--threads 0", "1 to 1024 threads"),
         ("render --threads 5000 --photons 64", "--threads 5000", "1 to 1024 threads"),

@@ -6,6 +6,7 @@
 
 mod closed_support;
 
+use caustix::bsdf::Grey;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scene::Scene;
 use caustix::scene::build::build;
@@ -26,14 +27,14 @@ use rayon::prelude::*;
 fn scaled(mut d: Description, s: f64) -> Scene {
     for e in &mut d.emitters {
         e.position.value *= s;
-        if let EmitterShape::Collimated { section } = &mut e.shape {
-            match section {
-                BeamSection::Disc { radius } => *radius *= s,
-                BeamSection::Rectangle { width, height } => {
-                    *width *= s;
-                    *height *= s;
-                }
+        match &mut e.shape {
+            EmitterShape::Collimated { section: BeamSection::Disc { radius } } => *radius *= s,
+            EmitterShape::Collimated { section: BeamSection::Rectangle { width, height } }
+            | EmitterShape::Panel { width, height } => {
+                *width *= s;
+                *height *= s;
             }
+            EmitterShape::Photometric { .. } | EmitterShape::Isotropic => {}
         }
     }
     for surface in &mut d.surfaces {
@@ -129,6 +130,7 @@ fn path(scene: &Scene, points: &OwenPoints, index: u64) -> Path {
         scene,
         emission,
         scene.start(emitter),
+        Grey,
         &mut coordinates,
         &mut Record(&mut steps),
         &mut exceptions,

@@ -9,6 +9,7 @@ mod closed_support;
 
 use std::f64::consts::PI;
 
+use caustix::bsdf::Grey;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scene::Scene;
 use caustix::sequence::independent::IndependentPoints;
@@ -69,8 +70,15 @@ fn hits<P: Points>(scene: &Scene, points: &P, n: u64) -> Vec<u32> {
             let mut coordinates = Coordinates::new(points, index, true);
             let (emitter, emission) = scene.emitters.emit(&mut coordinates);
             let mut sink = Hits::default();
-            let end =
-                walk(scene, emission, scene.start(emitter), &mut coordinates, &mut sink, &mut exceptions);
+            let end = walk(
+                scene,
+                emission,
+                scene.start(emitter),
+                Grey,
+                &mut coordinates,
+                &mut sink,
+                &mut exceptions,
+            );
             assert!(matches!(end, End::Absorbed(_)), "a closed sphere lets nothing out: {end:?}");
             sink.0
         })

@@ -8,7 +8,7 @@
 
 mod support;
 
-use caustix::bsdf::{Bsdf, Dielectric};
+use caustix::bsdf::{Bsdf, Dielectric, Grey, Reflectance};
 use caustix::emitter::{Emission, Emitter, Emitters, Isotropic, Photometric};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::photometry::lm63;
@@ -59,9 +59,9 @@ impl Sink for Watch<'_> {
                 let (n1, n2) = if arrival.hit.front { (ior_outside, ior) } else { (ior, ior_outside) };
                 if n1 * sine >= *n2 { &mut seen.total_reflections } else { &mut seen.fresnel }
             }
-            Bsdf::Mirror { reflectance: 1.0 } => &mut seen.perfect_mirror,
+            Bsdf::Mirror { reflectance } if reflectance.luminous() == 1.0 => &mut seen.perfect_mirror,
             Bsdf::Mirror { .. } => &mut seen.mirror,
-            Bsdf::Lambertian { reflectance: 1.0 } => &mut seen.white,
+            Bsdf::Lambertian { reflectance } if reflectance.luminous() == 1.0 => &mut seen.white,
             Bsdf::Lambertian { .. } => &mut seen.lambertian,
             Bsdf::Absorber => &mut seen.absorber,
         };
@@ -109,7 +109,7 @@ impl<P: Points> Chooser for Recorded<'_, P> {
 fn emission_account(scene: &Scene, emitter: usize, reuse: bool) -> u32 {
     let cells = match &scene.emitters.as_slice()[emitter] {
         Emitter::Photometric(e) => !e.grid().choice().is_single(),
-        Emitter::Isotropic(_) | Emitter::Collimated(_) => false,
+        Emitter::Isotropic(_) | Emitter::Collimated(_) | Emitter::Panel(_) => false,
     };
     let choices = u32::from(scene.emitters.as_slice().len() > 1) + u32::from(cells);
     if reuse { 2 } else { 2 + choices }
@@ -191,13 +191,13 @@ fn follow<C: Chooser>(
     chooser: &mut C,
     watch: &mut Watch<'_>,
 ) -> End {
-    walk(scene, emission, scene.start(emitter), chooser, watch, &mut Exceptions::default())
+    walk(scene, emission, scene.start(emitter), Grey, chooser, watch, &mut Exceptions::default())
 }
 
 struct Ignore;
 
-impl Sink for Ignore {
-    fn arrive(&mut self, _: &Arrival<'_>) {}
+impl<T> Sink<T> for Ignore {
+    fn arrive(&mut self, _: &Arrival<'_, T>) {}
 }
 
 /// Every photon of a scene, with and without renormalisation, two sequences; and the run's census is their sum.
@@ -211,9 +211,13 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
             let drawn = check_photon(scene, &owen, i, reuse, &mut totals);
             histogram[(drawn as usize).min(LONGEST_DIMENSION)] += 1;
         }
-        let how =
-            How { sampling: Sampling::Inverse, reuse, interrupt: &AtomicBool::new(false), progress: &|_| {} };
-        let census = trace_range(scene, &owen, 0..photons, how, || Ignore).census;
+        let how = How {
+            sampling: Sampling::default(),
+            reuse,
+            interrupt: &AtomicBool::new(false),
+            progress: &|_| {},
+        };
+        let census = trace_range(scene, &owen, 0..photons, Grey, how, || Ignore).census;
         assert_eq!(census.drawn_for.iter().sum::<u64>(), totals.drawn, "{name}");
         assert_eq!(census.dimension_histogram, histogram, "{name}");
         assert_eq!(census.dimension_max, totals.longest, "{name}");
@@ -284,7 +288,7 @@ fn a_glass_slab_over_an_absorbing_floor() {
 fn a_diffuse_sphere_from_inside() {
     let sphere = |reflectance| {
         let shape = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0).unwrap());
-        surface("sphere", shape, Bsdf::Lambertian { reflectance })
+        surface("sphere", shape, Bsdf::Lambertian { reflectance: Reflectance::grey(reflectance) })
     };
     let inside = DVec3::new(0.2, -0.3, 0.1);
     let simple = scene(vec![sphere(0.8)], vec![point(inside, 100.0)]);
@@ -307,7 +311,7 @@ fn a_diffuse_sphere_from_inside() {
 fn a_mirror_box_with_a_block_of_glass() {
     let mirror = |name: &str, half: f64, reflectance| {
         let shape = Shape::Mesh(box_mesh(DVec3::splat(-half), DVec3::splat(half)).unwrap());
-        surface(name, shape, Bsdf::Mirror { reflectance })
+        surface(name, shape, Bsdf::Mirror { reflectance: Reflectance::grey(reflectance) })
     };
     let lamp = || point(DVec3::new(0.31, -0.27, 0.63), 100.0);
     check_scene("mirror box", &scene(vec![mirror("box", 1.0, 0.9)], vec![lamp()]), 1 << 13);
@@ -319,7 +323,10 @@ fn a_mirror_box_with_a_block_of_glass() {
     );
     assert!(reuse.total_reflections > 0 && reuse.fresh > 0);
     // Perfect mirrors and perfect white surfaces draw nothing for the event.
-    let open = vec![mirror("block", 0.4, 1.0), floor_below(Bsdf::Lambertian { reflectance: 1.0 })];
+    let open = vec![
+        mirror("block", 0.4, 1.0),
+        floor_below(Bsdf::Lambertian { reflectance: Reflectance::grey(1.0) }),
+    ];
     check_scene(
         "perfect mirror, white floor",
         &scene(open, vec![point(DVec3::new(0.1, 0.2, 0.9), 1.0)]),

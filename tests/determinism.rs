@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
+use caustix::bsdf::Grey;
 use caustix::image::exr::{Maps, read_maps};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
@@ -152,8 +153,8 @@ fn seeds_and_replicates_share_no_coordinate_stream() {
 fn part<'s, P: Points>(scene: &'s Scene, points: &P, range: Range<u64>) -> (Receivers<'s>, Traced) {
     let receivers = Receivers::new(&scene.geometry, &scene.receivers);
     let interrupt = AtomicBool::new(false);
-    let how = How { sampling: Sampling::Inverse, reuse: true, interrupt: &interrupt, progress: &|_| {} };
-    let traced = trace_range(scene, points, range, how, || receivers.sink());
+    let how = How { sampling: Sampling::default(), reuse: true, interrupt: &interrupt, progress: &|_| {} };
+    let traced = trace_range(scene, points, range, Grey, how, || receivers.sink());
     assert!(traced.complete);
     (receivers, traced)
 }
@@ -244,7 +245,7 @@ fn a_photon_lost_on_purpose_is_seen() {
             ledger.begin(emitter);
             let mut exceptions = Exceptions::default();
             let start = scene.start(emitter);
-            let end = walk(&scene, emission, start, &mut coordinates, &mut Nothing, &mut exceptions);
+            let end = walk(&scene, emission, start, Grey, &mut coordinates, &mut Nothing, &mut exceptions);
             if doctored != Some(index) {
                 ledger.end(end);
             }

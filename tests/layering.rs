@@ -206,7 +206,14 @@ fn lib_lists_every_module_from_errors_to_the_command_line() {
     let order = order_of(&fs::read_to_string(root.join("lib.rs")).unwrap());
     assert_eq!(order[..2], ["error", "units"]);
     assert_eq!(order.last().unwrap(), "cli");
-    for pair in [("sequence", "sample"), ("scene", "transport"), ("tally", "estimate"), ("image", "report")] {
+    for pair in [
+        ("sequence", "sample"),
+        ("scene", "transport"),
+        ("tally", "estimate"),
+        ("run", "study"),
+        ("study", "image"),
+        ("image", "report"),
+    ] {
         let rank = |name: &str| order.iter().position(|m| m == name).unwrap();
         assert!(rank(pair.0) < rank(pair.1), "{pair:?}");
     }

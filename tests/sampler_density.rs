@@ -9,6 +9,7 @@
 mod support;
 
 use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web, lm63};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::{Rejection, Sampling};
@@ -40,7 +41,7 @@ fn emitter(photometry: &Photometry) -> Photometric {
 
 /// (polar angle, azimuth) in degrees of directions that photons of this file start with.
 fn sampled_angles(photometry: &Photometry, density: &Density<'_>, seed: u64) -> Vec<(f64, f64)> {
-    angles_by(Sampling::Inverse, photometry, density, seed)
+    angles_by(Sampling::default(), photometry, density, seed)
 }
 
 /// The same by another way of sampling tables.
@@ -149,7 +150,7 @@ fn check_invert(path: &Path) {
     let (mut worst, mut checked) = ([0.0f64; 2], 0);
     for i in 0..20_000 {
         let (u1, u2) = (points.coordinate(i, 0), to_unit_f64(points.coordinate(i, 1)));
-        let at = grid.sample(u1, u2);
+        let at = grid.sample(u1, u2, Solver::DEFAULT);
         let (v1, v2) = grid.invert(at.theta, at.phi).unwrap();
         worst[0] = worst[0].max(v1.abs_diff(u1) as f64 / 2f64.powi(64));
         worst[1] = worst[1].max((v2 - u2).abs());

@@ -137,23 +137,29 @@ fn toml_syntax() {
 #[test]
 fn emitters() {
     expect(
-        &emitter("[[emitter]]\ntype = «\"panel\"\nsize = [1, 1]"),
-        Kind::Unavailable,
-        "type = \"panel\"",
-        "photometric, isotropic or collimated; panel is not available yet",
+        &emitter("«[[emitter]]\ntype = \"panel\"\nposition = [0, 0, 1]\nflux_lm = 1"),
+        Kind::Missing,
+        "a panel [[emitter]] without `size`",
+        "size = [width, height] in metres",
+    );
+    expect(
+        &emitter("[[emitter]]\ntype = \"panel\"\nposition = [0, 0, 1]\nflux_lm = 1\nsize = [1, «0]"),
+        Kind::Range,
+        "size[1] = 0",
+        "a length from 1e-9 to 1e9 m",
     );
     let error = expect(
         &emitter("[[emitter]]\ntype = «\"isotropc\""),
         Kind::Unknown,
         "type = \"isotropc\"",
-        "photometric, isotropic or collimated",
+        "photometric, isotropic, collimated or panel",
     );
     assert_eq!(error.advice(), Some("did you mean \"isotropic\"?"));
     expect(
         &emitter("«[[emitter]]\nposition = [0, 0, 0]"),
         Kind::Missing,
         "an [[emitter]] without `type`",
-        "type = \"photometric\", \"isotropic\" or \"collimated\"",
+        "type = \"photometric\", \"isotropic\", \"collimated\" or \"panel\"",
     );
     expect(
         &emitter("«[[emitter]]\ntype = \"isotropic\"\nflux_lm = 1"),

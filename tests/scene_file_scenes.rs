@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use caustix::bsdf::Reflectance;
 use caustix::error::Kind;
 use caustix::scene::description::{
     BeamSection, Description, EmitterShape, Facing, MaterialKind, ReceiverEvents, ReceiverSide,
@@ -164,7 +165,7 @@ fn defaults_are_as_documented() {
     assert_eq!(frame.up, DVec3::Z);
     let EmitterShape::Collimated { section } = scene.emitters[2].shape else { panic!("a beam") };
     assert_eq!(section, BeamSection::Rectangle { width: 3.0, height: 4.0 });
-    assert_eq!(scene.materials[0].kind, MaterialKind::Mirror { reflectance: 1.0 });
+    assert_eq!(scene.materials[0].kind, MaterialKind::Mirror { reflectance: Reflectance::grey(1.0) });
     assert!(scene.surfaces[0].transform.is_identity());
     let receiver = &scene.receivers[0];
     assert_eq!((receiver.name.as_str(), receiver.cells), ("ball", Some([256, 256])));

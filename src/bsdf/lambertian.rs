@@ -1,20 +1,25 @@
 //! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of arrival.
 //!
-//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1.
+//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Incidence, Outcome};
+use super::{Incidence, Outcome, Reflectance, Throughput};
 use crate::math::frame::frame_about;
 use crate::math::trig::sin_cos;
 use crate::sample::coordinates::{Chooser, Purpose};
 
-/// Scatters with probability `reflectance`; density cos(theta)/pi in solid angle.
+/// Scatters what the throughput lets go on; density cos(theta)/pi in solid angle.
 #[inline]
-pub fn interact<C: Chooser>(reflectance: f64, at: &Incidence, chooser: &mut C) -> Outcome {
-    if !chooser.happens(reflectance) {
+pub fn interact<C: Chooser, T: Throughput>(
+    reflectance: &Reflectance,
+    at: &Incidence,
+    chooser: &mut C,
+    carried: &mut T,
+) -> Outcome {
+    if !carried.reflect(reflectance, chooser) {
         return Outcome::Absorbed;
     }
     let u1 = chooser.uniform(Purpose::Scatter);
@@ -35,6 +40,7 @@ pub fn cosine_direction(u1: f64, u2: f64) -> DVec3 {
 mod tests {
     use super::*;
     use crate::bsdf::script::Script;
+    use crate::bsdf::throughput::Grey;
 
     #[test]
     fn directions_stay_on_the_side_of_arrival_even_at_the_last_uniform() {
@@ -44,7 +50,7 @@ mod tests {
                 let at = Incidence { direction: -facet, facet, smooth: facet, front: true };
                 let mut script =
                     Script { events: vec![true], uniforms: vec![largest, u], ..Script::default() };
-                match interact(0.5, &at, &mut script) {
+                match interact(&Reflectance::grey(0.5), &at, &mut script, &mut Grey) {
                     Outcome::Leaves { direction, through: false, .. } => assert!(direction.dot(facet) > 0.0),
                     other => panic!("{other:?}"),
                 }

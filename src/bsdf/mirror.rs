@@ -1,14 +1,19 @@
 //! A mirror: a fixed part of the flux is reflected at every angle, the rest is absorbed.
 //!
-//! Scene text: `type = "mirror"`, `reflectance` 0 to 1 (default 1).
+//! Scene text: `type = "mirror"`, `reflectance` 0 to 1 (default 1), or `[r, g, b]`.
 
-use super::{Incidence, Outcome, keep_side, working_normal};
+use super::{Incidence, Outcome, Reflectance, Throughput, keep_side, working_normal};
 use crate::sample::coordinates::Chooser;
 
-/// Reflects about the smooth normal with probability `reflectance`.
+/// Reflects what the throughput lets go on about the smooth normal.
 #[inline]
-pub fn interact<C: Chooser>(reflectance: f64, at: &Incidence, chooser: &mut C) -> Outcome {
-    if !chooser.happens(reflectance) {
+pub fn interact<C: Chooser, T: Throughput>(
+    reflectance: &Reflectance,
+    at: &Incidence,
+    chooser: &mut C,
+    carried: &mut T,
+) -> Outcome {
+    if !carried.reflect(reflectance, chooser) {
         return Outcome::Absorbed;
     }
     let (normal, behind) = working_normal(at);
@@ -21,6 +26,7 @@ pub fn interact<C: Chooser>(reflectance: f64, at: &Incidence, chooser: &mut C) -
 mod tests {
     use super::*;
     use crate::bsdf::script::Script;
+    use crate::bsdf::throughput::Grey;
     use glam::DVec3;
 
     #[test]
@@ -32,14 +38,17 @@ mod tests {
             front: true,
         };
         let mut script = Script { events: vec![true, false], ..Script::default() };
-        match interact(0.7, &at, &mut script) {
+        match interact(&Reflectance::grey(0.7), &at, &mut script, &mut Grey) {
             Outcome::Leaves { direction, through: false, corrected: false } => {
                 assert!((direction - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-15);
             }
             other => panic!("{other:?}"),
         }
-        assert!(matches!(interact(0.7, &at, &mut script), Outcome::Absorbed));
+        assert!(matches!(interact(&Reflectance::grey(0.7), &at, &mut script, &mut Grey), Outcome::Absorbed));
         assert_eq!(script.asked, [0.7, 0.7]);
-        assert!(matches!(interact(1.0, &at, &mut Script::default()), Outcome::Leaves { .. }));
+        assert!(matches!(
+            interact(&Reflectance::grey(1.0), &at, &mut Script::default(), &mut Grey),
+            Outcome::Leaves { .. }
+        ));
     }
 }

@@ -3,8 +3,8 @@
 //! Contract of every model. A photon arrives along `direction` (unit, pointing the way it travels) on the side that the
 //! normals of [`Incidence`] look to; the model decides by the chooser whether it is absorbed and, if not, where it
 //! goes: away from the surface on the side of arrival, or `through` it. A photon carries flux, so the chance of going on
-//! is the albedo and no weight, cosine or eta^2 factor is left over. Coordinates are drawn only where there is more
-//! than one outcome.
+//! is the albedo and no cosine or eta^2 factor is left over; what a reflectance does to a photon with weights is told by its
+//! [`Throughput`]. Coordinates are drawn only where there is more than one outcome.
 //!
 //! To add a model: a file beside these, a line in [`Bsdf`] and an arm in [`Bsdf::interact`]; the scene file's name for it
 //! is given in `scene`.
@@ -12,12 +12,16 @@
 pub mod dielectric;
 pub mod lambertian;
 pub mod mirror;
+pub mod reflectance;
+pub mod throughput;
 
 use glam::DVec3;
 
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use reflectance::Reflectance;
+pub use throughput::{Fixed, Grey, Rgb, Throughput};
 
 /// A photon at a surface.
 #[derive(Debug, Clone, Copy)]
@@ -56,27 +60,40 @@ pub enum Bsdf {
     Dielectric(Dielectric),
     /// A mirror of this reflectance at every angle.
     Mirror {
-        /// Part of the flux that is reflected, 0 to 1.
-        reflectance: f64,
+        /// Part of the flux that is reflected.
+        reflectance: Reflectance,
     },
     /// Perfectly diffuse on the side of arrival.
     Lambertian {
-        /// Part of the flux that is reflected, 0 to 1.
-        reflectance: f64,
+        /// Part of the flux that is reflected.
+        reflectance: Reflectance,
     },
     /// Ends every photon.
     Absorber,
 }
 
 impl Bsdf {
-    /// Decides what happens to a photon that arrived.
+    /// Decides what happens to a photon that arrived, and to what it carries.
     #[inline]
-    pub fn interact<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Outcome {
+    pub fn interact<C: Chooser, T: Throughput>(
+        &self,
+        at: &Incidence,
+        chooser: &mut C,
+        carried: &mut T,
+    ) -> Outcome {
         match self {
             Self::Dielectric(dielectric) => dielectric.interact(at, chooser),
-            Self::Mirror { reflectance } => mirror::interact(*reflectance, at, chooser),
-            Self::Lambertian { reflectance } => lambertian::interact(*reflectance, at, chooser),
+            Self::Mirror { reflectance } => mirror::interact(reflectance, at, chooser, carried),
+            Self::Lambertian { reflectance } => lambertian::interact(reflectance, at, chooser, carried),
             Self::Absorber => Outcome::Absorbed,
+        }
+    }
+
+    /// Whether it treats channels differently.
+    pub fn is_coloured(&self) -> bool {
+        match self {
+            Self::Mirror { reflectance } | Self::Lambertian { reflectance } => reflectance.is_coloured(),
+            Self::Dielectric(_) | Self::Absorber => false,
         }
     }
 

@@ -128,11 +128,11 @@ fn draw<P: Points>(
 ) -> Option<GridPoint> {
     let mut u = coordinates.draw_reusable(Purpose::Emission);
     match sampling {
-        Sampling::Inverse => {
+        Sampling::Inverse(solver) => {
             let cell = coordinates.choose(grid.choice(), &mut u, Purpose::Emission);
             let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
             let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-            Some(grid.place(cell, u_theta, u_phi))
+            Some(grid.place(cell, u_theta, u_phi, solver))
         }
         Sampling::Rejection(rejection) => grid.reject(u, coordinates, rejection),
     }

@@ -1,7 +1,9 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
 pub mod check;
+pub mod compare;
 pub mod photometry;
+mod progress;
 pub mod render;
 pub mod sample;
 
@@ -48,8 +50,8 @@ enum Sub {
     Photometry(PhotometryArgs),
     /// Check a scene without tracing it.
     Check(CheckArgs),
-    /// The error of every algorithm variant (not available yet).
-    Compare(Later),
+    /// Measure the error of every algorithm variant against a reference (without SCENE: the built-in scene).
+    Compare(compare::CompareArgs),
     /// Sample directions of a photometric file, and judge them against its candela.
     Sample(SampleArgs),
     /// Say what a BSDF file holds (not available yet).
@@ -77,7 +79,8 @@ pub struct RenderArgs {
     /// the table's cell; mc:table against its maximum, mc:next-point the same with retries from the next point.
     #[arg(long, value_name = "V")]
     pub variant: Option<String>,
-    /// Point sequence: sobol-owen (default), sobol or independent.
+    /// Point sequence: sobol-owen (default), sobol, sobol-shift, independent, halton, halton-faure, hammersley, lattice, weyl or
+    /// kronecker, the last six also with "-rotation" for a seed; jittered, latin-hypercube.
     #[arg(long, value_name = "S")]
     pub sequence: Option<String>,
     /// Seed of the randomisation [default: the scene's, else 1].
@@ -186,7 +189,7 @@ pub fn main() -> ExitCode {
         Some(Sub::Render(args)) => render::run(&args),
         Some(Sub::Photometry(args)) => photometry::run(&args),
         Some(Sub::Check(args)) => check::run(&args),
-        Some(Sub::Compare(_)) => not_available("compare"),
+        Some(Sub::Compare(args)) => compare::run(&args),
         Some(Sub::Sample(args)) => sample::run(&args),
         Some(Sub::Bsdf(_)) => not_available("bsdf"),
     };

@@ -1,11 +1,7 @@
 //! `caustix render`: trace a scene, write its maps, say what was found.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::image::atomic::write_atomically;
@@ -16,13 +12,11 @@ use crate::scene::description::{Description, RunDescription};
 use crate::scene::{Scene, build, file};
 use crate::sequence::Sequence;
 
+use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::{RenderArgs, count, exit, fail, not_available, print, say, warn};
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
 pub(super) const MAX_THREADS: u32 = 1024;
-
-/// Set by the first Ctrl-C; the second ends the process at once.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// Reads and builds a scene; without a path the built-in one.
 pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDescription), Vec<Diagnostic>> {
@@ -106,7 +100,8 @@ fn plan(args: &RenderArgs, run: &RunDescription, photons: Option<u64>) -> Result
     let mut settings = Settings { photons, ..Settings::default() };
     settings.seed = args.seed.or(run.seed.map(|p| p.value)).unwrap_or(settings.seed);
     if let Some(name) = args.variant.as_deref() {
-        settings.algorithm = Algorithm::parse(name)?;
+        settings.algorithm = Algorithm::parse(name)
+            .map_err(|e| Diagnostic::new(e.kind(), format!("--{}", e.found()), e.required().to_string()))?;
     }
     if let Some(name) = args.sequence.as_deref() {
         settings.algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {
@@ -133,46 +128,27 @@ fn say_rounding(asked: Option<u64>, plan: &Plan) {
 }
 
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Outcome> {
-    if args.threads.is_some_and(|t| t == 0 || t > MAX_THREADS) {
-        let found = format!("--threads {}", args.threads.unwrap_or(0));
-        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_THREADS} threads")));
-    }
-    let threads = args.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build().map_err(|e| {
-        Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started")
-    })?;
-    let bar = progress_bar(args.quiet, plan);
-    let outcome = pool.install(|| trace(scene, plan, &INTERRUPTED, &|photons| bar.inc(photons)));
-    bar.finish_and_clear();
+    let pool = thread_pool(args.threads)?;
+    let progress = Progress::new(args.quiet, plan.photons());
+    progress.say("tracing");
+    let outcome = pool.install(|| trace(scene, plan, &INTERRUPTED, &|photons| progress.add(photons)));
+    progress.finish();
     outcome
 }
 
-fn progress_bar(quiet: bool, plan: &Plan) -> ProgressBar {
-    let visible = !quiet && std::io::stderr().is_terminal();
-    let target = if visible { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
-    let bar = ProgressBar::with_draw_target(Some(plan.photons()), target);
-    let template =
-        "tracing {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style.progress_chars("=> "));
+/// The threads that are asked for, all cores where none are.
+pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
+    if threads.is_some_and(|t| t == 0 || t > MAX_THREADS) {
+        let found = format!("--threads {}", threads.unwrap_or(0));
+        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_THREADS} threads")));
     }
-    bar.enable_steady_tick(Duration::from_millis(250));
-    bar
+    let threads = threads.unwrap_or(0);
+    rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build().map_err(|e| {
+        Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started")
+    })
 }
 
-fn catch_interrupts() {
-    let handler = || {
-        if INTERRUPTED.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(exit::INTERRUPTED));
-        }
-    };
-    // Fails only where a handler is set already; then Ctrl-C does what that one does.
-    if ctrlc::set_handler(handler).is_err() {
-        say("caustix: Ctrl-C cannot be caught here; it will end the run without results");
-    }
-}
-
-fn make_directory(path: &Path) -> Result<()> {
+pub(super) fn make_directory(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).map_err(|e| {
         Diagnostic::new(
             Kind::Io,

@@ -8,19 +8,23 @@
 
 pub mod collimated;
 pub mod isotropic;
+pub mod panel;
 pub mod photometric;
 
 use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::math::solve::Solver;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::discrete::Discrete;
 use crate::sample::method::Sampling;
+use crate::sample::rejection::UniformMap;
 use crate::sequence::Points;
 
 pub use collimated::Collimated;
 pub use isotropic::Isotropic;
+pub use panel::Panel;
 pub use photometric::Photometric;
 
 /// The start of a photon.
@@ -41,6 +45,8 @@ pub enum Emitter {
     Isotropic(Isotropic),
     /// A beam of parallel light.
     Collimated(Collimated),
+    /// A Lambertian rectangle.
+    Panel(Panel),
 }
 
 impl Emitter {
@@ -50,20 +56,12 @@ impl Emitter {
             Self::Photometric(e) => e.flux_lm(),
             Self::Isotropic(e) => e.flux_lm,
             Self::Collimated(e) => e.flux_lm,
+            Self::Panel(e) => e.flux_lm(),
         }
     }
 
-    /// A photon's start; `u` is the coordinate that chose the emitter, renormalised.
-    #[inline]
-    pub fn emit<P: Points>(&self, u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
-        match self {
-            Self::Photometric(e) => e.emit(u, coordinates),
-            Self::Isotropic(e) => e.emit(u, coordinates),
-            Self::Collimated(e) => e.emit(u, coordinates),
-        }
-    }
-
-    /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.
+    /// A photon's start; `u` is the coordinate that chose the emitter, renormalised. `None` where this point of the sequence
+    /// gives no photon, which only rejection knows.
     #[inline]
     pub fn emit_by<P: Points>(
         &self,
@@ -72,32 +70,32 @@ impl Emitter {
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
         match (self, sampling) {
+            (Self::Photometric(e), Sampling::Inverse(solver)) => Some(e.emit(u, coordinates, solver)),
             (Self::Photometric(e), Sampling::Rejection(rejection)) => {
                 e.emit_by_rejection(u, coordinates, rejection)
             }
-            _ => Some(self.emit(u, coordinates)),
+            (Self::Isotropic(e), _) => Some(e.emit(u, coordinates)),
+            (Self::Collimated(e), _) => Some(e.emit(u, coordinates)),
+            (Self::Panel(e), _) => Some(e.emit(u, coordinates)),
         }
     }
 
-    /// A photon's start by a map that shares nothing with [`Self::emit`] where there is a table, and its weight (1 on
-    /// average): for references.
-    pub fn emit_weighted<P: Points>(
-        &self,
-        u: Reusable,
-        coordinates: &mut Coordinates<'_, P>,
-    ) -> (Emission, f64) {
+    /// Continuous coordinates of an emission: two for a direction or a place, four for both.
+    pub const fn continuous_coordinates(&self) -> f64 {
         match self {
-            Self::Photometric(e) => e.emit_weighted(u, coordinates),
-            _ => (self.emit(u, coordinates), 1.0),
+            Self::Photometric(_) | Self::Isotropic(_) | Self::Collimated(_) => 2.0,
+            Self::Panel(_) => 4.0,
         }
     }
 
-    /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section.
+    /// A point of the emitter: where the photons of a point emitter start, the middle of a beam's cross-section or of a
+    /// panel.
     pub fn centre(&self) -> DVec3 {
         match self {
             Self::Photometric(e) => e.position(),
             Self::Isotropic(e) => e.position,
             Self::Collimated(e) => e.centre,
+            Self::Panel(e) => e.centre(),
         }
     }
 
@@ -105,7 +103,7 @@ impl Emitter {
     pub fn memory_bytes(&self) -> usize {
         match self {
             Self::Photometric(e) => size_of::<Photometric>() + e.grid().memory_bytes(),
-            Self::Isotropic(_) | Self::Collimated(_) => 0,
+            Self::Isotropic(_) | Self::Collimated(_) | Self::Panel(_) => 0,
         }
     }
 }
@@ -146,12 +144,18 @@ impl Emitters {
         &self.emitters
     }
 
-    /// Starts a photon: the index of its emitter and where it starts. A single emitter costs no choice.
+    /// Starts a photon by inverse functions: the index of its emitter and where it starts. A single emitter costs no choice.
     #[inline]
     pub fn emit<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission) {
         let mut u = coordinates.draw_reusable(Purpose::Emission);
         let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
-        (which, self.emitters[which].emit(u, coordinates))
+        let emission = match &self.emitters[which] {
+            Emitter::Photometric(e) => e.emit(u, coordinates, Solver::DEFAULT),
+            Emitter::Isotropic(e) => e.emit(u, coordinates),
+            Emitter::Collimated(e) => e.emit(u, coordinates),
+            Emitter::Panel(e) => e.emit(u, coordinates),
+        };
+        (which, emission)
     }
 
     /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.
@@ -165,12 +169,39 @@ impl Emitters {
         let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
         Some((which, self.emitters[which].emit_by(sampling, u, coordinates)?))
     }
+}
 
-    /// Starts a weighted photon: [`Emitter::emit_weighted`] of an emitter chosen by flux.
-    pub fn emit_weighted<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission, f64) {
+/// The emission of references: from a table in directions uniform in solid angle, weighted; from anything else as ever.
+#[derive(Debug, Clone)]
+pub struct WeightedEmitters<'e> {
+    emitters: &'e Emitters,
+    maps: Vec<Option<UniformMap>>,
+}
+
+impl<'e> WeightedEmitters<'e> {
+    /// The maps of these emitters.
+    ///
+    /// # Errors
+    /// None for emitters that stand in a scene.
+    pub fn new(emitters: &'e Emitters) -> Result<Self> {
+        let map = |emitter: &Emitter| match emitter {
+            Emitter::Photometric(e) => UniformMap::new(e.grid()).map(Some),
+            Emitter::Isotropic(_) | Emitter::Collimated(_) | Emitter::Panel(_) => Ok(None),
+        };
+        Ok(Self { emitters, maps: emitters.emitters.iter().map(map).collect::<Result<_>>()? })
+    }
+
+    /// Starts a photon: the index of its emitter, where it starts, and its weight, 1 on average.
+    pub fn emit<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission, f64) {
         let mut u = coordinates.draw_reusable(Purpose::Emission);
-        let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
-        let (emission, weight) = self.emitters[which].emit_weighted(u, coordinates);
+        let which = coordinates.choose(&self.emitters.choice, &mut u, Purpose::Emission);
+        let (emission, weight) = match (&self.emitters.emitters[which], &self.maps[which]) {
+            (Emitter::Photometric(e), Some(map)) => e.emit_weighted(map, u, coordinates),
+            (Emitter::Photometric(e), None) => (e.emit(u, coordinates, Solver::DEFAULT), 1.0),
+            (Emitter::Isotropic(e), _) => (e.emit(u, coordinates), 1.0),
+            (Emitter::Collimated(e), _) => (e.emit(u, coordinates), 1.0),
+            (Emitter::Panel(e), _) => (e.emit(u, coordinates), 1.0),
+        };
         (which, emission, weight)
     }
 }

@@ -16,12 +16,14 @@ use glam::{DMat3, DVec3};
 use super::Emission;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::frame::frame_from_axis;
+use crate::math::solve::Solver;
 use crate::photometry::Photometry;
 use crate::photometry::web::PhotometricType;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::grid::Grid;
 use crate::sample::method::Rejection;
+use crate::sample::rejection::UniformMap;
 use crate::sequence::{Points, to_unit_f64};
 
 /// A photometric point emitter.
@@ -108,11 +110,16 @@ impl Photometric {
 
     /// A photon's start: the cell by its flux, theta and phi by inverse functions.
     #[inline]
-    pub fn emit<P: Points>(&self, mut u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
+    pub fn emit<P: Points>(
+        &self,
+        mut u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+        solver: Solver,
+    ) -> Emission {
         let cell = coordinates.choose(self.grid.choice(), &mut u, Purpose::Emission);
         let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
         let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-        let point = self.grid.place(cell, u_theta, u_phi);
+        let point = self.grid.place(cell, u_theta, u_phi, solver);
         Emission { origin: self.position, direction: self.axes * point.direction }
     }
 
@@ -127,17 +134,15 @@ impl Photometric {
         Some(Emission { origin: self.position, direction: self.axes * point.direction })
     }
 
-    /// A photon's start with a direction uniform in solid angle over the range of the table, and the weight (1 on average)
-    /// that gives it the table's intensity. Shares no table of cells and no equation with [`Self::emit`].
+    /// A photon's start with a direction uniform in solid angle where the table is not zero, and the weight (1 on average)
+    /// that makes its intensity the table's.
     pub fn emit_weighted<P: Points>(
         &self,
+        map: &UniformMap,
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> (Emission, f64) {
-        let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
-        let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-        let point = self.grid.uniform(u_theta, u_phi);
-        let weight = self.grid.value(point.theta, point.phi) * self.grid.solid_angle() / self.grid.integral();
+        let (point, weight) = map.sample(&self.grid, u, coordinates);
         (Emission { origin: self.position, direction: self.axes * point.direction }, weight)
     }
 }

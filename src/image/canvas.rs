@@ -168,6 +168,28 @@ impl Canvas {
         }
     }
 
+    /// Fills a polygon, even-odd, by 8 x 8 samples a pixel; meant for markers, not for large areas.
+    pub fn polygon(&mut self, corners: &[[f64; 2]], colour: Colour) {
+        const SAMPLES: usize = 8;
+        if corners.iter().flatten().any(|c| !c.is_finite()) {
+            return;
+        }
+        let range = |k: usize, low: usize, high: usize| {
+            let least = corners.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
+            let most = corners.iter().map(|c| c[k]).fold(f64::NEG_INFINITY, f64::max);
+            // Casts saturate, so no corners at all give an empty range.
+            (least.floor() as usize).max(low)..(most.ceil().max(0.0) as usize).min(high)
+        };
+        let at = |pixel: usize, i: usize| pixel as f64 + (i as f64 + 0.5) / SAMPLES as f64;
+        for y in range(1, self.clip[1], self.clip[3]) {
+            for x in range(0, self.clip[0], self.clip[2]) {
+                let samples = (0..SAMPLES * SAMPLES).map(|i| [at(x, i % SAMPLES), at(y, i / SAMPLES)]);
+                let inside = samples.filter(|p| contains(corners, *p)).count();
+                self.blend(y * self.width + x, colour, inside as f32 / (SAMPLES * SAMPLES) as f32);
+            }
+        }
+    }
+
     /// A straight line of this width with round ends.
     pub fn line(&mut self, from: [f64; 2], to: [f64; 2], width_px: f64, colour: Colour) {
         self.polyline(&[from, to], width_px, colour, 1.0);
@@ -314,6 +336,14 @@ impl Canvas {
             }
         }
     }
+}
+
+/// Whether a ray from the point to the right crosses the polygon's outline an odd number of times.
+fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossed = edges
+        .filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+    crossed.count() % 2 == 1
 }
 
 /// The chain of points of an arc, fine enough for a pixel grid; angles as in [`Canvas::arc`].
@@ -494,6 +524,22 @@ mod tests {
             let columns: Vec<usize> = (0..60).filter(inked).collect();
             let (low, high) = (columns[0], columns[columns.len() - 1]);
             assert!(low + 1 >= first && high <= last + 1, "{anchor:?}: {low}..{high}");
+        }
+    }
+
+    #[test]
+    fn a_polygon_covers_its_area() {
+        let disc: Vec<[f64; 2]> = arc_points([10.3, 9.6], 5.0, [0.0, 2.0 * std::f64::consts::PI]);
+        for (corners, area) in [
+            (vec![[3.0, 3.0], [11.0, 3.0], [11.0, 7.5]], 18.0),
+            (vec![[4.0, 4.0], [9.0, 9.0], [4.0, 14.0], [-1.0, 9.0]], 50.0 - 1.0),
+            (disc, 25.0 * std::f64::consts::PI),
+            (vec![], 0.0),
+            (vec![[1.0, f64::NAN], [5.0, 5.0], [1.0, 5.0]], 0.0),
+        ] {
+            let mut canvas = Canvas::new(20, 20, Colour::WHITE);
+            canvas.polygon(&corners, Colour::BLACK);
+            assert!((ink(&canvas) - area).abs() <= 0.01 * area, "{} for {area}", ink(&canvas));
         }
     }
 

@@ -46,6 +46,13 @@ pub enum Shape {
         /// Its colour.
         colour: Colour,
     },
+    /// A small filled shape, such as a marker.
+    Polygon {
+        /// Its corners; where it covers itself twice it is empty.
+        corners: Vec<[f64; 2]>,
+        /// Its colour.
+        colour: Colour,
+    },
     /// Upright text.
     Text {
         /// Where its anchor is, on the baseline.
@@ -79,6 +86,7 @@ impl Drawing {
                     draw_chain(&mut canvas, &arc_points(*centre, *radius, *angles), pen);
                 }
                 Shape::Rect { area, colour } => canvas.rect(*area, *colour),
+                Shape::Polygon { corners, colour } => canvas.polygon(corners, *colour),
                 Shape::Text { at, text, style } => canvas.text(*at, text, style),
             }
         }
@@ -124,9 +132,7 @@ fn draw_chain(canvas: &mut Canvas, points: &[[f64; 2]], pen: &Pen) {
 fn write_shape(svg: &mut String, shape: &Shape) {
     match shape {
         Shape::Polyline { points, pen } => {
-            let list: Vec<String> =
-                points.iter().map(|p| format!("{},{}", number(p[0]), number(p[1]))).collect();
-            write!(svg, "<polyline points=\"{}\" {}/>", list.join(" "), stroke(pen)).ok();
+            write!(svg, "<polyline points=\"{}\" {}/>", list(points), stroke(pen)).ok();
         }
         Shape::Arc { centre: [x, y], radius, angles: [from, to], pen } => {
             if (to - from).abs() >= std::f64::consts::TAU * (1.0 - 1e-9) {
@@ -149,6 +155,10 @@ fn write_shape(svg: &mut String, shape: &Shape) {
             write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
                 .ok();
         }
+        Shape::Polygon { corners, colour } => {
+            let (points, fill) = (list(corners), hex(*colour));
+            write!(svg, "<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>").ok();
+        }
         Shape::Text { at, text, style } => {
             let anchor = match style.anchor {
                 Anchor::Start => "start",
@@ -168,6 +178,11 @@ fn write_shape(svg: &mut String, shape: &Shape) {
         }
     }
     svg.push('\n');
+}
+
+fn list(points: &[[f64; 2]]) -> String {
+    let pairs: Vec<String> = points.iter().map(|p| format!("{},{}", number(p[0]), number(p[1]))).collect();
+    pairs.join(" ")
 }
 
 fn stroke(pen: &Pen) -> String {
@@ -231,6 +246,10 @@ mod tests {
                 Shape::Rect { area: [0.0, 0.0, 10.0, 10.0], colour: Colour::BLACK },
                 Shape::Polyline { points: vec![[5.0, 20.0], [55.0, 20.0]], pen },
                 Shape::Arc { centre: [30.0, 20.0], radius: 10.0, angles: [0.0, 3.0], pen },
+                Shape::Polygon {
+                    corners: vec![[40.0, 0.0], [60.0, 0.0], [60.0, 20.0], [40.0, 20.0]],
+                    colour: Colour::srgb(0, 0, 200),
+                },
                 Shape::Text {
                     at: [30.0, 39.0],
                     text: "x < y".into(),
@@ -239,12 +258,19 @@ mod tests {
             ],
         };
         let svg = drawing.to_svg();
-        for part in ["<polyline points=\"5,20 55,20\"", "A 10 10 0 0 1", "x &lt; y</text>", "#c80000"] {
+        for part in [
+            "<polyline points=\"5,20 55,20\"",
+            "<polygon points=\"40,0 60,0",
+            "A 10 10 0 0 1",
+            "x &lt; y</text>",
+            "#c80000",
+        ] {
             assert!(svg.contains(part), "{part} is not in {svg}");
         }
         let canvas = drawing.to_canvas();
         assert_eq!(canvas.pixel(5, 5).to_srgb(), [0, 0, 0]);
         assert_eq!(canvas.pixel(25, 20).to_srgb(), [200, 0, 0]);
+        assert_eq!(canvas.pixel(50, 5).to_srgb(), [0, 0, 200]);
         assert_eq!(canvas.pixel(30, 29).to_srgb(), [200, 0, 0]);
     }
 }

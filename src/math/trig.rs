@@ -24,7 +24,7 @@ pub struct InCell {
 
 impl InCell {
     /// All four at s >= 0, each to a few units in the last place however small s is.
-    #[inline]
+    #[inline(always)]
     pub fn at(s: f64) -> Self {
         if s <= TINY {
             Self::series::<5>(s)

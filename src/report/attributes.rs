@@ -53,6 +53,8 @@ pub fn attributes(
     text("caustix.variant", algorithm.variant.name());
     if algorithm.variant.rejects() {
         text("caustix.rejection", algorithm.rejection.name());
+    } else {
+        text("caustix.solver", algorithm.solver.name());
     }
     text("caustix.sequence", algorithm.sequence.name());
     text("caustix.seed", &outcome.plan.seed.to_string());

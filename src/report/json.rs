@@ -21,6 +21,9 @@ pub struct Report {
     pub variant: &'static str,
     /// Point sequence.
     pub sequence: &'static str,
+    /// Solver of the cell equation of a variant that inverts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver: Option<&'static str>,
     /// How a variant that rejects does it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rejection: Option<&'static str>,
@@ -187,6 +190,7 @@ impl Report {
             },
             variant: outcome.plan.algorithm.variant.name(),
             sequence: outcome.plan.algorithm.sequence.name(),
+            solver: (!rejects).then(|| outcome.plan.algorithm.solver.name()),
             rejection: rejects.then(|| outcome.plan.algorithm.rejection.name()),
             seed: outcome.plan.seed,
             photons: outcome.photons,

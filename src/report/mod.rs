@@ -1,9 +1,11 @@
-//! What a run says: report.json, the printed summary, the files of each receiver.
+//! What a run says: report.json, the printed summary, the files of each receiver; what a study says: [`compare`].
 
 pub mod attributes;
 pub mod candela;
+pub mod compare;
 pub mod json;
 pub mod maps;
+pub mod parts;
 pub mod polar;
 pub mod statistics;
 pub mod text;

@@ -38,7 +38,7 @@ fn write_all(
         grouped(outcome.photons),
         outcome.replicates,
         grouped(outcome.photons / u64::from(outcome.replicates.max(1))),
-        plan.algorithm.name(),
+        plan.algorithm.variant.name(),
         plan.algorithm.sequence.name(),
         plan.seed
     )?;

@@ -1,6 +1,7 @@
 //! The algorithms that can be compared: the paper's variants and what may be changed about them.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::math::solve::Solver;
 use crate::sample::method::{Rejection, Sampling};
 use crate::sequence::Sequence;
 
@@ -64,17 +65,29 @@ pub struct Algorithm {
     pub sequence: Sequence,
     /// How variants that reject do it; without effect on the others.
     pub rejection: Rejection,
+    /// Solver of the cell equation; without effect on variants that reject.
+    pub solver: Solver,
+}
+
+impl Default for Algorithm {
+    /// The best unbiased one: everything of the method, with the fastest solver.
+    fn default() -> Self {
+        Self { solver: Solver::DEFAULT, ..Self::from(Variant::QmcInverseReuse) }
+    }
 }
 
 impl From<Variant> for Algorithm {
+    /// The paper's variant: on its sequence, with the secant method where it inverts, rejecting inside the cell where it
+    /// rejects.
     fn from(variant: Variant) -> Self {
-        Self { variant, sequence: variant.sequence(), rejection: Rejection::default() }
+        Self { variant, sequence: variant.sequence(), rejection: Rejection::default(), solver: Solver::PAPER }
     }
 }
 
 impl Algorithm {
-    /// What a variant's name with qualifiers says: `qmc`, `qmc:table`, `qmc:next-point`, `qmc-inverse:halton`.
-    /// Qualifiers are a sequence and a way of rejection, in any order.
+    /// What a variant's name with qualifiers says: `qmc`, `qmc:table`, `qmc:next-point`, `qmc-inverse:halton:newton`.
+    /// Qualifiers are a sequence, a way of rejection and a solver,
+    /// in any order.
     ///
     /// # Errors
     /// An unknown name, and a qualifier of rejection on a variant that rejects nothing.
@@ -83,7 +96,7 @@ impl Algorithm {
         let name = words.next().unwrap_or_default();
         let unknown = |word: &str, known: Vec<&str>| {
             let found =
-                if word == text { format!("variant {word}") } else { format!("{word} in variant {text}") };
+                if word == text { format!("variant {word}") } else { format!("variant {text}: {word}") };
             Diagnostic::new(Kind::Unknown, found, format!("one of: {}", known.join(", ")))
         };
         let mut algorithm = Self::from(
@@ -92,22 +105,25 @@ impl Algorithm {
         );
         for word in words {
             let rejection = Rejection::ALL.into_iter().find(|r| r.name() == word);
-            if rejection.is_some() && !algorithm.variant.rejects() {
-                return Err(Diagnostic::new(
-                    Kind::Range,
-                    format!("{word} in variant {text}"),
-                    "a variant that rejects, mc or qmc: this one samples by inverse functions",
-                ));
+            let solver = Solver::from_name(word);
+            let misplaced = match (algorithm.variant.rejects(), rejection, solver) {
+                (false, Some(_), _) => Some("mc or qmc: this variant samples by inverse functions"),
+                (true, _, Some(_)) => {
+                    Some("qmc-inverse or qmc-inverse-reuse: this variant solves no equation")
+                }
+                _ => None,
+            };
+            if let Some(required) = misplaced {
+                return Err(Diagnostic::new(Kind::Range, format!("variant {text}: {word}"), required));
             }
-            match (rejection, Sequence::from_name(word)) {
-                (Some(rejection), _) => algorithm.rejection = rejection,
-                (_, Some(sequence)) => algorithm.sequence = sequence,
+            match (rejection, solver, Sequence::from_name(word)) {
+                (Some(rejection), ..) => algorithm.rejection = rejection,
+                (_, Some(solver), _) => algorithm.solver = solver,
+                (.., Some(sequence)) => algorithm.sequence = sequence,
                 _ => {
-                    let rejections = Rejection::ALL.iter().map(|r| r.name());
-                    return Err(unknown(
-                        word,
-                        rejections.chain(Sequence::ALL.iter().map(|s| s.name())).collect(),
-                    ));
+                    let known = Rejection::ALL.iter().map(|r| r.name());
+                    let known = known.chain(Solver::ALL.iter().map(|s| s.name()));
+                    return Err(unknown(word, known.chain(Sequence::ALL.iter().map(|s| s.name())).collect()));
                 }
             }
         }
@@ -125,6 +141,7 @@ impl Algorithm {
             }
         };
         add(self.rejection != default.rejection, self.rejection.name());
+        add(self.solver != default.solver, self.solver.name());
         add(self.sequence != default.sequence, self.sequence.name());
         name
     }
@@ -132,8 +149,8 @@ impl Algorithm {
     /// What it does, in words: sequence, way of sampling, coordinates.
     pub fn description(&self) -> String {
         let sampling = match self.sampling() {
-            Sampling::Inverse => "inverse functions",
-            Sampling::Rejection(rejection) => rejection.description(),
+            Sampling::Inverse(solver) => format!("inverse functions ({})", solver.name()),
+            Sampling::Rejection(rejection) => rejection.description().to_string(),
         };
         let coordinates = if self.variant.reuses() { "; events share a coordinate" } else { "" };
         format!("{}; {sampling}{coordinates}", self.sequence.name())
@@ -141,7 +158,11 @@ impl Algorithm {
 
     /// How tables are sampled.
     pub fn sampling(&self) -> Sampling {
-        if self.variant.rejects() { Sampling::Rejection(self.rejection) } else { Sampling::Inverse }
+        if self.variant.rejects() {
+            Sampling::Rejection(self.rejection)
+        } else {
+            Sampling::Inverse(self.solver)
+        }
     }
 }
 
@@ -159,6 +180,7 @@ mod tests {
             "qmc:table",
             "mc:next-point",
             "qmc:next-point:sobol",
+            "qmc-inverse:quadratic-newton",
         ] {
             assert_eq!(Algorithm::parse(name).unwrap().name(), name);
         }
@@ -171,8 +193,9 @@ mod tests {
         for (name, needle) in [
             ("qcm", "variant qcm"),
             ("", "variant "),
-            ("qmc:haltom", "haltom in variant qmc:haltom"),
-            ("qmc-inverse:table", "table in variant qmc-inverse:table"),
+            ("qmc:haltom", "variant qmc:haltom: haltom"),
+            ("qmc-inverse:table", "variant qmc-inverse:table: table"),
+            ("mc:newton", "variant mc:newton: newton"),
         ] {
             assert!(Algorithm::parse(name).unwrap_err().found().starts_with(needle), "{name}");
         }

@@ -173,10 +173,7 @@ pub fn trace(
     if outcome.photons == 0 {
         return Err(Diagnostic::new(
             Kind::Interrupted,
-            format!(
-                "an interrupt before the first {} photons were traced",
-                plan.photons_per_replicate.min(FIRST_STAGE)
-            ),
+            format!("an interrupt before the first {} photons were traced", first_stage(plan)),
             "at least these for a result",
         ));
     }
@@ -188,6 +185,12 @@ pub fn trace(
 /// Photons of the first stage of the first replicate.
 const FIRST_STAGE: u64 = 1 << 10;
 
+/// Photons of the first stage of the first replicate: all of it where the points are made for their number.
+fn first_stage(plan: &Plan) -> u64 {
+    let n = plan.photons_per_replicate;
+    if plan.algorithm.sequence.needs_number() { n } else { n.min(FIRST_STAGE) }
+}
+
 /// The numbers of photons at which the tracing of a replicate pauses.
 ///
 /// Within a range the order follows the first coordinate, so a part of it is a part of the emitter's directions, not a
@@ -195,7 +198,7 @@ const FIRST_STAGE: u64 = 1 << 10;
 /// net of 2^m points, and an interrupted run falls back on the last. Later replicates count only as a whole.
 fn stages(plan: &Plan, replicate: u32) -> Vec<u64> {
     let n = plan.photons_per_replicate;
-    let first = if replicate == 0 { n.min(FIRST_STAGE) } else { n };
+    let first = if replicate == 0 { first_stage(plan) } else { n };
     std::iter::successors(Some(first), |end| (*end < n).then(|| n.min(2 * end))).collect()
 }
 

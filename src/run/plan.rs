@@ -2,7 +2,7 @@
 
 use crate::error::{Diagnostic, Kind, Result};
 
-use super::algorithm::{Algorithm, Variant};
+use super::algorithm::Algorithm;
 
 /// Photons of a run that names no number.
 pub const DEFAULT_PHOTONS: u64 = 1 << 22;
@@ -28,12 +28,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self {
-            photons: None,
-            replicates: None,
-            seed: 1,
-            algorithm: Algorithm::from(Variant::QmcInverseReuse),
-        }
+        Self { photons: None, replicates: None, seed: 1, algorithm: Algorithm::default() }
     }
 }
 
@@ -91,7 +86,7 @@ mod tests {
     use crate::sequence::Sequence;
 
     fn plan(photons: Option<u64>, replicates: Option<u32>, sequence: Sequence) -> Result<Plan> {
-        let algorithm = Algorithm { sequence, ..Variant::QmcInverseReuse.into() };
+        let algorithm = Algorithm { sequence, ..Algorithm::default() };
         Plan::new(&Settings { photons, replicates, algorithm, ..Settings::default() })
     }
 

@@ -2,10 +2,12 @@
 
 use std::sync::atomic::AtomicBool;
 
+use crate::bsdf::{Grey, Rgb, Throughput};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::independent::IndependentPoints;
+use crate::sequence::other::OtherPoints;
 use crate::sequence::owen::OwenPoints;
 use crate::sequence::sobol::SobolPoints;
 use crate::sequence::{Points, Sequence};
@@ -43,11 +45,54 @@ impl PointSet {
     /// # Errors
     /// A sequence that cannot have this many points.
     pub fn provide<U: UsePoints>(&self, user: U) -> Result<U::Output> {
-        Ok(match self.sequence {
-            Sequence::Independent => user.with(&IndependentPoints::new(self.seed, self.replicate)),
-            Sequence::Sobol => user.with(&SobolPoints::new()),
-            Sequence::SobolOwen => user.with(&OwenPoints::new(self.seed, self.replicate)),
+        Ok(match self.any()? {
+            AnyPoints::Independent(points) => user.with(&points),
+            AnyPoints::Sobol(points) => user.with(&points),
+            AnyPoints::SobolOwen(points) => user.with(&points),
+            AnyPoints::Other(points) => user.with(&points),
         })
+    }
+
+    /// The points behind one type.
+    ///
+    /// # Errors
+    /// A sequence that cannot have this many points.
+    pub fn any(&self) -> Result<AnyPoints> {
+        Ok(match self.sequence {
+            Sequence::Independent => {
+                AnyPoints::Independent(IndependentPoints::new(self.seed, self.replicate))
+            }
+            Sequence::Sobol => AnyPoints::Sobol(SobolPoints::new()),
+            Sequence::SobolOwen => AnyPoints::SobolOwen(OwenPoints::new(self.seed, self.replicate)),
+            other => AnyPoints::Other(OtherPoints::new(other, self.seed, self.replicate, Some(self.number))?),
+        })
+    }
+}
+
+/// The points of any sequence behind one type, chosen anew for every coordinate: for uses that are not worth a walk compiled
+/// for each sequence.
+#[derive(Debug, Clone)]
+#[allow(clippy::large_enum_variant)] // One of them exists at a time, and none is moved after it is made.
+pub enum AnyPoints {
+    /// See [`Sequence::Independent`].
+    Independent(IndependentPoints),
+    /// See [`Sequence::Sobol`].
+    Sobol(SobolPoints),
+    /// See [`Sequence::SobolOwen`].
+    SobolOwen(OwenPoints),
+    /// Every other sequence.
+    Other(OtherPoints),
+}
+
+impl Points for AnyPoints {
+    #[inline]
+    fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
+        match self {
+            Self::Independent(points) => points.coordinate(index, coordinate),
+            Self::Sobol(points) => points.coordinate(index, coordinate),
+            Self::SobolOwen(points) => points.coordinate(index, coordinate),
+            Self::Other(points) => points.coordinate(index, coordinate),
+        }
     }
 }
 
@@ -73,7 +118,7 @@ impl<'s> Tracer<'s> {
     /// Traces up to photon number `until`.
     ///
     /// # Errors
-    /// A sequence that cannot have this many points, and a ledger that does not balance (a defect of the program).
+    /// A sequence that cannot have this many points or, where rejection skips points, more; a ledger that does not balance (a defect of the program).
     pub fn trace(
         &mut self,
         until: u64,
@@ -81,6 +126,13 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
+        if self.algorithm.sampling().skips_points() && self.points.sequence.needs_number() {
+            return Err(Diagnostic::new(
+                Kind::Range,
+                format!("variant {}", self.algorithm.name()),
+                "a sequence that goes on beyond N points, for rejection that retries with the next one",
+            ));
+        }
         let how = How {
             reuse: self.algorithm.variant.reuses(),
             sampling: self.algorithm.sampling(),
@@ -89,7 +141,12 @@ impl<'s> Tracer<'s> {
         };
         let wanted = until.saturating_sub(self.photons);
         let stage = Stage { scene: self.scene, how, receivers, attempts: self.attempts, wanted };
-        let (traced, attempts) = self.points.provide(stage)?;
+        // A scene in colour is traced by one walk for all sequences, any other by a walk compiled for its own.
+        let (traced, attempts) = if self.scene.is_coloured() {
+            stage.carrying(&self.points.any()?, Rgb::WHITE)
+        } else {
+            self.points.provide(stage)?
+        };
         check_balance(&traced)?;
         (self.photons, self.attempts) = (until, attempts);
         Ok(traced)
@@ -108,12 +165,18 @@ impl UsePoints for Stage<'_, '_> {
     type Output = (Traced, u64);
 
     fn with<P: Points>(self, points: &P) -> Self::Output {
+        self.carrying(points, Grey)
+    }
+}
+
+impl Stage<'_, '_> {
+    fn carrying<P: Points, T: Throughput>(self, points: &P, carried: T) -> (Traced, u64) {
         let Self { scene, how, receivers, attempts, wanted } = self;
         let end = match how.sampling {
             s if s.skips_points() => advance(scene, points, &how, attempts, wanted),
-            Sampling::Inverse | Sampling::Rejection(_) => attempts + wanted,
+            Sampling::Inverse(_) | Sampling::Rejection(_) => attempts + wanted,
         };
-        (trace_range(scene, points, attempts..end, how, || receivers.sink()), end)
+        (trace_range(scene, points, attempts..end, carried, how, || receivers.sink()), end)
     }
 }
 

@@ -1,18 +1,12 @@
 //! One cell of a table on the sphere: its flux, and sampling by inverse functions (METHOD 3; paper eqs. 7 and 8).
 //!
 //! A cell is [theta1, theta1 + dt] x [phi1, phi1 + dp] with values A1, A2 at theta1 (at phi1 and phi2) and B1, B2 at the
-//! far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. With a = A1 + A2, b = B1 + B2 and the
-//! in-cell variable s = theta - theta1 the integral of the theta marginal is
-//!
-//! ```text
-//! F(s) = a (S sin s + C (1 - cos s)) + (b - a)/dt (S (s sin s - (1 - cos s)) + C (sin s - s cos s)),
-//! ```
-//!
-//! S = sin theta1, C = cos theta1: eq. (8) about the cell's own edge. Every term is of the order of the result, so
-//! nothing cancels in narrow cells or at a pole, where eq. (8) in absolute angles loses all digits.
+//! far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. The marginal of theta is in
+//! [`super::marginal`]; the conditional of phi is a quadratic.
 
-use crate::math::solve::{Root, bracketed_secant};
-use crate::math::trig::{InCell, sin_cos};
+use super::marginal::{Marginal, Polar, linear_quantile};
+use crate::math::solve::Solver;
+use crate::math::trig::sin_cos;
 
 /// A band of the table between two polar angles.
 #[derive(Debug, Clone, Copy)]
@@ -21,10 +15,10 @@ pub struct Row {
     pub theta: f64,
     /// dt, positive.
     pub width: f64,
-    inverse_width: f64,
-    sin: f64,
-    cos: f64,
-    sin_end: f64,
+    pub(super) inverse_width: f64,
+    pub(super) sin: f64,
+    pub(super) cos: f64,
+    pub(super) sin_end: f64,
 }
 
 /// A lune of the table between two azimuths.
@@ -50,22 +44,6 @@ pub struct Cell {
     pub column: u32,
 }
 
-/// A polar angle inside a row, as sine and cosine.
-#[derive(Debug, Clone, Copy)]
-pub struct Polar {
-    /// theta - theta1, in [0, dt].
-    pub s: f64,
-    /// sin theta.
-    pub sin: f64,
-    /// cos theta.
-    pub cos: f64,
-    /// Evaluations of F that the solver used.
-    pub evaluations: u32,
-}
-
-/// Residual |F(s)/F(dt) - u| at which the solver stops: 2^-46, a few times the rounding of F itself.
-const TOLERANCE: f64 = 1.0 / (1u64 << 46) as f64;
-
 impl Row {
     /// The row between two polar angles, 0 <= theta1 < theta2 <= pi.
     pub fn new(theta1: f64, theta2: f64) -> Self {
@@ -90,15 +68,6 @@ impl Row {
     pub(super) fn cos(&self) -> f64 {
         self.cos
     }
-
-    /// F(s) for the edge sum a and the slope (b - a)/dt, and the trigonometry that it needed.
-    #[inline]
-    fn mass_to(&self, a: f64, slope: f64, s: f64) -> (f64, InCell) {
-        let t = InCell::at(s);
-        let constant = self.sin * t.sin + self.cos * t.versine;
-        let linear = self.sin * t.moment_cos + self.cos * t.moment_sin;
-        (a * constant + slope * linear, t)
-    }
 }
 
 impl Column {
@@ -120,7 +89,7 @@ impl Cell {
     /// A cell, or `None` where its flux is zero (or too small to be told from zero).
     pub fn new(row: &Row, row_index: u32, column_index: u32, corners: [f64; 4]) -> Option<Self> {
         let [a1, a2, b1, b2] = corners;
-        let (mass, _) = row.mass_to(a1 + a2, (b1 + b2 - (a1 + a2)) * row.inverse_width, row.width);
+        let (mass, _) = Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(row.width);
         let inverse_mass = 1.0 / mass;
         (mass > 0.0 && inverse_mass.is_finite()).then_some(Self {
             corners,
@@ -143,37 +112,13 @@ impl Cell {
 
     /// The marginal distribution function of s: F(s) / F(dt).
     pub fn theta_cdf(&self, row: &Row, s: f64) -> f64 {
-        let (a, b) = self.edge_sums();
-        (row.mass_to(a, (b - a) * row.inverse_width, s).0 * self.inverse_mass).clamp(0.0, 1.0)
+        (Marginal::new(row, self.edge_sums(), 1.0).mass_to(s).0 * self.inverse_mass).clamp(0.0, 1.0)
     }
 
-    /// The polar angle at which the marginal distribution function is u: eq. (8), by the safeguarded secant.
+    /// The polar angle at which the marginal distribution function is u: the root of eq. (8).
     #[inline]
-    pub fn sample_theta(&self, row: &Row, u: f64) -> Polar {
-        let (a, b) = self.edge_sums();
-        let w = row.width;
-        // Start: the inverse for a density linear between its end values a sin theta1 and b sin theta2. Where both
-        // vanish (a cell from pole to pole, a pole with a zero edge) it has none, and u itself serves.
-        let (g0, g1) = (a * row.sin, b * row.sin_end);
-        let near = g0 / (g0 + g1);
-        let (x, inverse_slope) = if near.is_finite() {
-            let x = linear_quantile(near, u);
-            (x, 0.5 * w / (near + (1.0 - 2.0 * near) * x))
-        } else {
-            (u, w)
-        };
-        let (level, rise) = (a * self.inverse_mass, (b - a) * row.inverse_width * self.inverse_mass);
-        let found: Root<InCell> = bracketed_secant(0.0, w, x * w, inverse_slope, TOLERANCE, |s| {
-            let (mass, t) = row.mass_to(level, rise, s);
-            (mass - u, t)
-        });
-        let (t, cos_s) = (found.by_product, 1.0 - found.by_product.versine);
-        Polar {
-            s: found.x,
-            sin: (row.sin * cos_s + row.cos * t.sin).max(0.0),
-            cos: row.cos * cos_s - row.sin * t.sin,
-            evaluations: found.evaluations,
-        }
+    pub fn sample_theta(&self, row: &Row, u: f64, solver: Solver) -> Polar {
+        Marginal::new(row, self.edge_sums(), self.inverse_mass).solve(u, solver)
     }
 
     /// Values at phi1 and phi2 at the polar position s.
@@ -204,15 +149,6 @@ impl Cell {
         let (l, r) = self.ends_at(row, s);
         l * (1.0 - x) + r * x
     }
-}
-
-/// Quantile u of a density on [0, 1] that is linear from `near` to 1 - `near` (in units of their sum): the root of
-/// (1 - 2 near) x^2 + 2 near x = u in the form that does not cancel.
-#[inline]
-fn linear_quantile(near: f64, u: f64) -> f64 {
-    let far = 1.0 - near;
-    let denominator = near + (near * near * (1.0 - u) + far * far * u).sqrt();
-    if denominator > 0.0 { (u / denominator).min(1.0) } else { u }
 }
 
 #[cfg(test)]
@@ -310,8 +246,8 @@ mod tests {
             };
             let (a, b) = (corners[0] + corners[1], corners[2] + corners[3]);
             let whole = mass_by_quadrature(row.theta, row.width, a, b, row.width);
-            for u in uniforms() {
-                let polar = cell.sample_theta(&row, u);
+            for (u, solver) in uniforms().into_iter().flat_map(|u| Solver::ALL.map(|solver| (u, solver))) {
+                let polar = cell.sample_theta(&row, u, solver);
                 assert!((0.0..=row.width).contains(&polar.s), "{theta} {width} {corners:?} {u}: {polar:?}");
                 let back = mass_by_quadrature(row.theta, row.width, a, b, polar.s) / whole;
                 let error = (back - u).abs();
@@ -344,7 +280,9 @@ mod tests {
         assert!((cell.flux(&column) - 4.0 * PI).abs() < 1e-14);
         // Uniform on the sphere: cos theta = 1 - 2 u.
         for u in uniforms() {
-            assert!((cell.sample_theta(&row, u).cos - (1.0 - 2.0 * u)).abs() < 1e-13);
+            for solver in Solver::ALL {
+                assert!((cell.sample_theta(&row, u, solver).cos - (1.0 - 2.0 * u)).abs() < 1e-13);
+            }
         }
     }
 

@@ -17,7 +17,7 @@ pub enum Purpose {
     EmissionTheta,
     /// The second continuous coordinate of an emission.
     EmissionPhi,
-    /// The place within a beam's cross-section.
+    /// The place within a beam's cross-section or on a panel.
     BeamPosition,
     /// A discrete event at a surface.
     Event,

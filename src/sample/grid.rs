@@ -9,10 +9,12 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::cell::{Cell, Column, Polar, Row};
+use super::cell::{Cell, Column, Row};
 use super::choose::{Reusable, TWO_TO_64};
 use super::discrete::Discrete;
+use super::marginal::Polar;
 use crate::error::{Diagnostic, Kind, Result};
+use crate::math::solve::Solver;
 use crate::sequence::to_unit_f64;
 
 /// Nodes a grid may have: 16 times the largest table seen in the wild (721 x 361).
@@ -99,6 +101,11 @@ impl Grid {
         (cell, &self.rows[cell.row as usize], &self.columns[cell.column as usize])
     }
 
+    /// Cells of positive flux.
+    pub(super) fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+
     /// The largest value at a node.
     pub fn largest(&self) -> f64 {
         self.largest
@@ -113,10 +120,10 @@ impl Grid {
 
     /// The point of a chosen cell for the continuous coordinates of theta and phi.
     #[inline]
-    pub fn place(&self, cell: usize, u_theta: f64, u_phi: f64) -> GridPoint {
+    pub fn place(&self, cell: usize, u_theta: f64, u_phi: f64, solver: Solver) -> GridPoint {
         let cell = &self.cells[cell];
         let (row, column) = (&self.rows[cell.row as usize], &self.columns[cell.column as usize]);
-        let Polar { s, sin, cos, evaluations } = cell.sample_theta(row, u_theta);
+        let Polar { s, sin, cos, evaluations } = cell.sample_theta(row, u_theta, solver);
         let x = cell.sample_phi(row, s, u_phi);
         let (sin_phi, cos_phi) = column.azimuth(x);
         GridPoint {
@@ -129,10 +136,10 @@ impl Grid {
 
     /// The point for two coordinates, the first a 64-bit fraction that also chooses the cell.
     #[inline]
-    pub fn sample(&self, u1: u64, u2: f64) -> GridPoint {
+    pub fn sample(&self, u1: u64, u2: f64, solver: Solver) -> GridPoint {
         let mut u = Reusable::fresh(u1);
         let (cell, _) = self.choice.choose(&mut u);
-        self.place(cell, to_unit_f64(u.bits()), u2)
+        self.place(cell, to_unit_f64(u.bits()), u2, solver)
     }
 
     /// The coordinates whose sample is (theta, phi): the inverse of [`Self::sample`]; `None` outside the grid and where
@@ -260,7 +267,7 @@ mod tests {
         let grid = Grid::new(&p, &a, &v).unwrap();
         for i in 0..20_000u64 {
             let (u1, u2) = (mix64(2 * i), to_unit_f64(mix64(2 * i + 1)));
-            let point = grid.sample(u1, u2);
+            let point = grid.sample(u1, u2, Solver::DEFAULT);
             let (v1, v2) = grid.invert(point.theta, point.phi).unwrap();
             // The remainder resolves theta to 2^-46 of the cell; angles are rounded to 2^-52 of a turn against cells
             // of a tenth, and u inside a cell is worth its probability.
@@ -287,7 +294,9 @@ mod tests {
             if !(0.01..0.99).contains(&to_unit_f64(rest.bits())) {
                 continue;
             }
-            let at = |du: i64, dv: f64| grid.sample(u1.wrapping_add_signed(du * h1 as i64), u2 + dv);
+            let at = |du: i64, dv: f64| {
+                grid.sample(u1.wrapping_add_signed(du * h1 as i64), u2 + dv, Solver::DEFAULT)
+            };
             let (here, up, down, right, left) = (at(0, 0.0), at(1, 0.0), at(-1, 0.0), at(0, h2), at(0, -h2));
             let cell = |q: &GridPoint| grid.locate(q.theta, q.phi).map(|(i, j, ..)| (i, j));
             if cell(&up) != cell(&down) || cell(&left) != cell(&right) {
@@ -314,12 +323,12 @@ mod tests {
         let one = Grid::new(&[0.0, 1.0], &[0.0, 1.0], &[1.0, 2.0, 3.0, 4.0]).unwrap();
         assert!(one.choice().is_single());
         let (v1, v2) = one.invert(0.5, 0.5).unwrap();
-        let back = one.sample(v1, v2);
+        let back = one.sample(v1, v2, Solver::DEFAULT);
         assert!((back.theta - 0.5).abs() < 1e-12 && (back.phi - 0.5).abs() < 1e-12);
         let (p, a, v) = table(720, 360, |i, j| f64::from((i * j % 1000) as u32) * 1e-9 + 1.0);
         let large = Grid::new(&p, &a, &v).unwrap();
         assert!(large.memory_bytes() < 40 << 20, "{}", large.memory_bytes());
-        assert!((large.sample(u64::MAX, 0.5).theta - PI).abs() < 0.01);
+        assert!((large.sample(u64::MAX, 0.5, Solver::DEFAULT).theta - PI).abs() < 0.01);
     }
 
     #[test]
@@ -329,11 +338,11 @@ mod tests {
         v[1] = 1e-12;
         let grid = Grid::new(&p, &a, &v).unwrap();
         for i in 0..10_000u64 {
-            let q = grid.sample(mix64(i), to_unit_f64(mix64(!i)));
+            let q = grid.sample(mix64(i), to_unit_f64(mix64(!i)), Solver::DEFAULT);
             assert!(grid.value(q.theta, q.phi) > 0.0);
         }
         // The very first fraction belongs to the rare cell at the pole.
-        let first = grid.sample(0, 0.5);
+        let first = grid.sample(0, 0.5, Solver::DEFAULT);
         assert!(first.theta <= p[1]);
         assert!(grid.cell_probability(0, 0) > 0.0 && grid.cell_probability(5, 5) == 0.0);
     }

@@ -1,11 +1,13 @@
 //! How a table is sampled: by inverse functions, or by the rejection that they are compared with.
 
+use crate::math::solve::Solver;
+
 /// The way from coordinates to a direction of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
-    /// Inverse functions (METHOD 3): two coordinates, the first of which also chooses the cell.
-    #[default]
-    Inverse,
+    /// Inverse functions (METHOD 3), with this solver of the cell equation: two coordinates, the first of which also
+    /// chooses the cell.
+    Inverse(Solver),
     /// Rejection: proposals uniform in solid angle, accepted with value / largest value. The same density.
     Rejection(Rejection),
 }
@@ -46,6 +48,12 @@ impl Rejection {
             Self::Table => "rejection against the table's maximum, retries from the next coordinates",
             Self::NextPoint => "rejection against the table's maximum, retries from the next point",
         }
+    }
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self::Inverse(Solver::DEFAULT)
     }
 }
 

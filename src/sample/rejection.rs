@@ -12,8 +12,10 @@ use glam::DVec3;
 use super::cell::Row;
 use super::choose::Reusable;
 use super::coordinates::{Coordinates, Purpose};
+use super::discrete::Discrete;
 use super::grid::{Grid, GridPoint};
 use super::method::Rejection;
+use crate::error::{Diagnostic, Kind, Result};
 use crate::math::trig::{InCell, sin_cos};
 use crate::sequence::{Points, to_unit_f64};
 
@@ -86,18 +88,25 @@ impl Grid {
     }
 
     /// A point uniform in the solid angle of a cell; the value in units of the cell's largest corner.
-    fn propose_in_cell(&self, cell: usize, u_theta: f64, u_phi: f64) -> Proposal {
-        let (cell, row, column) = self.cell(cell);
+    fn propose_in_cell(&self, index: usize, u_theta: f64, u_phi: f64) -> Proposal {
+        let (cell, row, _) = self.cell(index);
+        let point = self.uniform_in_cell(index, u_theta, u_phi);
+        let largest = cell.corners.iter().copied().fold(0.0, f64::max);
+        let s = (point.theta - row.theta).clamp(0.0, row.width);
+        Proposal { point, value: cell.value(row, s, u_phi) / largest }
+    }
+
+    /// A point uniform in the solid angle of a cell.
+    fn uniform_in_cell(&self, cell: usize, u_theta: f64, u_phi: f64) -> GridPoint {
+        let (_, row, column) = self.cell(cell);
         let Reached { s, sin, cos } = reach(row.sin(), row.cos(), u_theta * row.cap());
         let (sin_phi, cos_phi) = column.azimuth(u_phi);
-        let point = GridPoint {
+        GridPoint {
             direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
-            theta: row.theta + s,
+            theta: row.theta + s.min(row.width),
             phi: column.phi + u_phi * column.width,
             evaluations: 0,
-        };
-        let largest = cell.corners.iter().copied().fold(0.0, f64::max);
-        Proposal { point, value: cell.value(row, s.min(row.width), u_phi) / largest }
+        }
     }
 
     /// A point uniform in the solid angle of the whole grid; the value in units of its largest.
@@ -106,9 +115,8 @@ impl Grid {
         Proposal { point, value: self.value(point.theta, point.phi) / self.largest() }
     }
 
-    /// A point uniform in solid angle over the range of the grid, whatever its values: the emission map that shares
-    /// nothing with the sampler.
-    pub fn uniform(&self, u_theta: f64, u_phi: f64) -> GridPoint {
+    /// A point uniform in solid angle over the range of the grid.
+    fn uniform(&self, u_theta: f64, u_phi: f64) -> GridPoint {
         let ([low, high], [phi1, phi2]) = self.range();
         let (sin1, cos1) = libm::sincos(low);
         let h = u_theta * (cos1 - libm::cos(high));
@@ -124,9 +132,23 @@ impl Grid {
     }
 
     /// Solid angle of the range of the grid, sr.
-    pub fn solid_angle(&self) -> f64 {
+    fn solid_angle(&self) -> f64 {
         let ([low, high], [phi1, phi2]) = self.range();
         (libm::cos(low) - libm::cos(high)) * (phi2 - phi1)
+    }
+
+    /// Proposals per accepted direction of [`Rejection::Cell`]: the mean over cells, by flux, of largest corner x solid
+    /// angle / flux.
+    pub fn proposals_of_cells(&self) -> f64 {
+        let mut sum = 0.0;
+        let mut flux = 0.0;
+        for index in 0..self.cell_count() {
+            let (cell, row, column) = self.cell(index);
+            let largest = cell.corners.iter().copied().fold(0.0, f64::max);
+            sum += largest * row.cap() * column.width;
+            flux += cell.flux(column);
+        }
+        sum / flux
     }
 
     /// Proposals per accepted direction of [`Rejection::Table`].
@@ -135,10 +157,52 @@ impl Grid {
     }
 }
 
+/// Directions uniform in solid angle over the cells of a grid that have a positive value somewhere: an emission map that
+/// shares neither the cells' flux nor the cell equation with the sampler. A direction's weight makes it the table's.
+#[derive(Debug, Clone)]
+pub struct UniformMap {
+    choice: Discrete,
+    solid_angle: f64,
+}
+
+impl UniformMap {
+    /// The map of a grid.
+    ///
+    /// # Errors
+    /// None for a grid, which has a cell of positive flux.
+    pub fn new(grid: &Grid) -> Result<Self> {
+        let solid_angles: Vec<f64> = (0..grid.cell_count())
+            .map(|index| {
+                let (_, row, column) = grid.cell(index);
+                row.cap() * column.width
+            })
+            .collect();
+        let choice = Discrete::new(&solid_angles).ok_or_else(|| {
+            Diagnostic::new(Kind::Range, "a table without cells", "a cell of positive solid angle")
+        })?;
+        Ok(Self { choice, solid_angle: solid_angles.iter().sum() })
+    }
+
+    /// A direction and its weight, 1 on average; `u` is what is left of the coordinate that chose the emitter.
+    pub fn sample<P: Points>(
+        &self,
+        grid: &Grid,
+        mut u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+    ) -> (GridPoint, f64) {
+        let cell = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
+        let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
+        let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
+        let point = grid.uniform_in_cell(cell, u_theta, u_phi);
+        (point, grid.value(point.theta, point.phi) * self.solid_angle / grid.integral())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sequence::independent::IndependentPoints;
+    use crate::sequence::owen::OwenPoints;
 
     #[test]
     fn the_reached_angle_is_right_in_cells_of_any_width_and_at_both_poles() {
@@ -161,6 +225,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn weights_of_the_uniform_map_average_to_one_and_to_the_table() {
+        // A cell of zeros, one bright corner: mean weight 1, and the weighted share of a cell is its share of the flux.
+        let polar = [0.0, 0.7, 1.5, PI];
+        let azimuth = [0.0, 2.0, 2.0 * PI];
+        let values = [0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 9.0, 1.0, 1.0, 1.0];
+        let grid = Grid::new(&polar, &azimuth, &values).unwrap();
+        let map = UniformMap::new(&grid).unwrap();
+        let points = OwenPoints::new(3, 0);
+        let n = 1u64 << 16;
+        let mut shares = [[0.0; 2]; 3];
+        for i in 0..n {
+            let mut c = Coordinates::new(&points, i, true);
+            let u = c.draw_reusable(Purpose::Emission);
+            let (point, weight) = map.sample(&grid, u, &mut c);
+            assert_eq!(c.drawn(), 2);
+            let at = |edges: &[f64], x: f64| edges[1..edges.len() - 1].iter().filter(|e| x >= **e).count();
+            shares[at(&polar, point.theta)][at(&azimuth, point.phi)] += weight / n as f64;
+        }
+        let sum: f64 = shares.iter().flatten().sum();
+        assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+        for (i, row) in shares.iter().enumerate() {
+            for (j, share) in row.iter().enumerate() {
+                assert!((share - grid.cell_probability(i, j)).abs() < 1e-4, "{i} {j}: {share}");
+            }
+        }
+        assert_eq!(shares[0][0], 0.0);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use crate::bsdf::{Bsdf, Dielectric};
 use crate::emitter::collimated::CrossSection;
-use crate::emitter::{Collimated, Emitter, Isotropic, Photometric};
+use crate::emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{
     self, Formula, HeightImage, Heightfield, Noise, ObjOptions, Octave, Paraboloid, Rectangle, Shape,
@@ -26,7 +26,11 @@ use super::{Identity, Places, Scene, SceneParts};
 /// # Errors
 /// All that is wrong with it and its files, not only the first.
 pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagnostic>> {
-    let mut parts = SceneParts { identity: identity(description), ..SceneParts::default() };
+    let mut parts = SceneParts {
+        compared_reflections: description.compare.map(|c| c.reflections),
+        identity: identity(description),
+        ..SceneParts::default()
+    };
     parts.warnings.extend(description.warnings.iter().cloned());
     let mut errors = Vec::new();
     for surface in &description.surfaces {
@@ -216,6 +220,9 @@ fn emitter(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnosti
             };
             let flux_lm = required_flux(e)?;
             Ok(Emitter::Collimated(Collimated { centre: position, direction: aim, section, flux_lm }))
+        }
+        EmitterShape::Panel { width, height } => {
+            Ok(Emitter::Panel(Panel::new(position, aim, up, [*width, *height], required_flux(e)?)))
         }
     }
 }

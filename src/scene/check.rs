@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::bsdf::Bsdf;
-use crate::emitter::{Emitter, collimated::CrossSection};
+use crate::emitter::{Emitter, Panel, collimated::CrossSection};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts, coincident_surfaces};
 
@@ -26,7 +26,8 @@ pub fn at_place(places: &[Place], index: usize, diagnostic: Diagnostic) -> Diagn
 ///
 /// # Errors
 /// An emitter on a surface, where no side is right; inside a closed dielectric, because there is no medium to start
-/// in; a beam whose cross-section reaches across a closed surface.
+/// in; a beam whose cross-section reaches across a closed surface; a panel that a closed surface touches or cuts. (An open
+/// surface may cut a panel: there is no side that its photons could be wrong about.)
 pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf]) -> Result<Whereabouts> {
     let centre = emitter.centre();
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
@@ -51,24 +52,61 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
     for point in rim(emitter) {
         if geometry.all_behind(point) != behind {
             return fail(
-                format!("the beam of emitter \"{name}\" starting partly inside a closed surface"),
-                "a cross-section wholly on one side of every closed surface",
+                format!("the light of emitter \"{name}\" starting partly inside a closed surface"),
+                "a cross-section, or a panel, wholly on one side of every closed surface",
             );
         }
+    }
+    if let Emitter::Panel(panel) = emitter
+        && let Some(surface) = cut_by(panel, geometry, &behind)
+    {
+        return fail(
+            format!("the panel \"{name}\" cut by the closed surface \"{}\"", label(surface)),
+            "a panel wholly on one side of every closed surface",
+        );
     }
     Ok(Whereabouts::start(behind))
 }
 
-/// Points around the cross-section of a beam.
+/// Lines across a panel, each way, along which a closed surface is looked for.
+const PANEL_LINES: u32 = 16;
+
+/// The closed surface that cuts a panel, as far as lines across it show.
+fn cut_by(panel: &Panel, geometry: &Geometry, behind: &[SurfaceId]) -> Option<SurfaceId> {
+    let lines = f64::from(PANEL_LINES);
+    // The middles of strips: the rim itself, which may lie close to a wall, has been looked at.
+    let end = 1.0 - 1.0 / lines;
+    for i in 0..PANEL_LINES {
+        let across = (2.0 * f64::from(i) + 1.0) / lines - 1.0;
+        for (from, to) in [((-end, across), (end, across)), ((across, -end), (across, end))] {
+            let (from, to) = (panel.point(from.0, from.1), panel.point(to.0, to.1));
+            let length = (to - from).length();
+            let start = Whereabouts::start(behind.iter().copied());
+            let hit = geometry.nearest(from, (to - from) / length, &start, &mut 0);
+            if let Some(hit) = hit.filter(|hit| hit.closed && hit.t < length) {
+                return Some(hit.surface);
+            }
+        }
+    }
+    None
+}
+
+/// Points around the cross-section of a beam, or around a panel.
 fn rim(emitter: &Emitter) -> Vec<DVec3> {
-    let Emitter::Collimated(beam) = emitter else { return Vec::new() };
-    let (x, y, corner) = match beam.section {
-        CrossSection::Rectangle(x, y) => (x, y, 1.0),
-        CrossSection::Disc(x, y) => (x, y, std::f64::consts::FRAC_1_SQRT_2),
+    let (centre, x, y, corner) = match emitter {
+        Emitter::Collimated(beam) => match beam.section {
+            CrossSection::Rectangle(x, y) => (beam.centre, x, y, 1.0),
+            CrossSection::Disc(x, y) => (beam.centre, x, y, std::f64::consts::FRAC_1_SQRT_2),
+        },
+        Emitter::Panel(panel) => {
+            let centre = panel.centre();
+            (centre, panel.point(1.0, 0.0) - centre, panel.point(0.0, 1.0) - centre, 1.0)
+        }
+        Emitter::Photometric(_) | Emitter::Isotropic(_) => return Vec::new(),
     };
     [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
         .into_iter()
         .chain([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(a, b)| (a * corner, b * corner)))
-        .map(|(a, b)| beam.centre + x * a + y * b)
+        .map(|(a, b)| centre + x * a + y * b)
         .collect()
 }

@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use super::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
+use crate::bsdf::Reflectance;
 use crate::error::{Diagnostic, Kind, Result};
 
 /// A place in a scene file, both counted from 1; columns count characters.
@@ -52,6 +53,8 @@ pub struct Description {
     pub surfaces: Vec<SurfaceDescription>,
     /// In the order of the file.
     pub receivers: Vec<ReceiverDescription>,
+    /// `[compare]`, where there is one.
+    pub compare: Option<CompareDescription>,
     /// Defaults for the command line.
     pub run: RunDescription,
     /// What is allowed but probably not meant.
@@ -98,7 +101,7 @@ impl Description {
     pub fn files(&self) -> impl Iterator<Item = &Placed<String>> {
         let emitters = self.emitters.iter().filter_map(|e| match &e.shape {
             EmitterShape::Photometric { file, .. } => Some(file),
-            EmitterShape::Isotropic | EmitterShape::Collimated { .. } => None,
+            EmitterShape::Isotropic | EmitterShape::Collimated { .. } | EmitterShape::Panel { .. } => None,
         });
         let surfaces = self.surfaces.iter().filter_map(|s| match &s.shape {
             ShapeDescription::Mesh { file, .. } => Some(file),
@@ -125,7 +128,7 @@ impl Description {
 pub struct EmitterDescription {
     /// Unique; `emitter 1`, `emitter 2`, ... where the file gives none.
     pub name: String,
-    /// The photometric centre, or the centre of a beam's cross-section, in metres.
+    /// The photometric centre, or the centre of a beam's cross-section or of a panel, in metres.
     pub position: Placed<DVec3>,
     /// Frame; `aim` -z and `up` y for isotropic emitters, where it means nothing.
     pub frame: Frame,
@@ -161,6 +164,13 @@ pub enum EmitterShape {
     Collimated {
         /// The cross-section, orthogonal to the aim.
         section: BeamSection,
+    },
+    /// A rectangle of equal luminance in all directions on the side of its aim.
+    Panel {
+        /// Extent along aim x up, in metres.
+        width: f64,
+        /// Extent along up, in metres.
+        height: f64,
     },
 }
 
@@ -204,13 +214,13 @@ pub enum MaterialKind {
     },
     /// A mirror on both sides; the rest is absorbed.
     Mirror {
-        /// Reflected part, 0 to 1.
-        reflectance: f64,
+        /// Reflected part.
+        reflectance: Reflectance,
     },
     /// A diffuser on both sides; the rest is absorbed.
     Lambertian {
-        /// Reflected part, 0 to 1.
-        reflectance: f64,
+        /// Reflected part.
+        reflectance: Reflectance,
     },
     /// Absorbs everything.
     Absorber,
@@ -433,6 +443,13 @@ pub enum ReceiverEvents {
     Direct,
     /// After at least one event.
     Indirect,
+}
+
+/// `[compare]`: what `caustix compare` does with the scene beside what every scene gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CompareDescription {
+    /// Every photon is reflected this often, with weights and without roulette; 0 to 30.
+    pub reflections: u32,
 }
 
 /// `[run]`: what the command line takes where it says nothing.

@@ -47,6 +47,8 @@ pub struct Scene {
     pub receivers: Vec<Receiver>,
     /// Names of the emitters, in their order.
     pub emitter_names: Vec<String>,
+    /// The fixed number of reflections of `[compare]`, where the scene names one.
+    pub compared_reflections: Option<u32>,
     /// Where it comes from.
     pub identity: Identity,
     /// What is allowed but probably not meant.
@@ -64,6 +66,8 @@ pub struct SceneParts {
     pub emitters: Vec<(String, Emitter)>,
     /// Receivers.
     pub receivers: Vec<ReceiverSpec>,
+    /// The fixed number of reflections of `[compare]`, if there is one.
+    pub compared_reflections: Option<u32>,
     /// Where the scene comes from; empty for one made in code.
     pub identity: Identity,
     /// Warnings so far.
@@ -119,6 +123,7 @@ impl Scene {
                 emitters,
                 receivers,
                 emitter_names,
+                compared_reflections: parts.compared_reflections,
                 identity: parts.identity,
                 warnings: parts.warnings,
                 bsdfs,
@@ -137,6 +142,11 @@ impl Scene {
     /// What all surfaces are made of, by surface.
     pub fn bsdfs(&self) -> &[Bsdf] {
         &self.bsdfs
+    }
+
+    /// Whether anything in it treats channels differently: then photons carry a weight for each.
+    pub fn is_coloured(&self) -> bool {
+        self.bsdfs.iter().any(Bsdf::is_coloured)
     }
 
     /// The side state of photons that leave an emitter.

@@ -1,7 +1,8 @@
 //! What a scene requires: only that machinery runs (ARCHITECTURE, Numbers: "only what a scene requires").
 //!
-//! What is not in the list costs nothing: no storage and no branch in the inner loop. Today nothing that a scene can
-//! name needs stored photons, wavelengths, weights or a camera, so none of those exists.
+//! What is not in the list costs nothing: no storage and no branch in the inner loop. Only a scene of materials in colour
+//! has photons with weights. Today nothing that a scene can name needs stored photons, wavelengths or a camera, so none of
+//! those exists.
 
 use crate::bsdf::Bsdf;
 use crate::emitter::Emitter;
@@ -23,13 +24,18 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("photometric table", emitter(|e| matches!(e, Emitter::Photometric(_)))),
         ("isotropic emission", emitter(|e| matches!(e, Emitter::Isotropic(_)))),
         ("collimated emission", emitter(|e| matches!(e, Emitter::Collimated(_)))),
+        ("panel emission", emitter(|e| matches!(e, Emitter::Panel(_)))),
         ("choice of emitter", emitters.len() > 1),
         ("triangles", shape(|s| matches!(s, Shape::Mesh(_) | Shape::Rectangle(_)))),
         ("exact shapes", shape(|s| matches!(s, Shape::Sphere(_) | Shape::Paraboloid(_)))),
         ("smooth normals", specular && shape(|s| matches!(s, Shape::Mesh(m) if m.is_smooth()))),
         ("refraction", bsdf(|b| matches!(b, Bsdf::Dielectric(_)))),
         ("mirror reflection", bsdf(|b| matches!(b, Bsdf::Mirror { .. }))),
-        ("diffuse scattering", bsdf(|b| matches!(b, Bsdf::Lambertian { reflectance } if *reflectance > 0.0))),
+        (
+            "diffuse scattering",
+            bsdf(|b| matches!(b, Bsdf::Lambertian { reflectance } if reflectance.luminous() > 0.0)),
+        ),
+        ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
         ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),
     ]

@@ -5,14 +5,28 @@
 //! any thread may ask for any coordinate of any point in any order and gets the same bits.
 //!
 //! To add a sequence: a file beside these with a type that implements [`Points`], a line in [`Sequence`], a line in
-//! [`Sequence::ALL`], and an arm where a run is started (`run::trace`), which matches once a batch, not once a
-//! coordinate.
+//! [`Sequence::ALL`], and an arm in [`other::OtherPoints`]. Only a sequence that is to be as fast as it can be also gets
+//! an arm where a run is started (`run::trace`), which matches once a batch, not once a coordinate.
 
 pub mod hash;
+pub mod primes;
+pub mod fraction;
+pub mod permutation;
 pub mod independent;
 pub mod joe_kuo;
-pub mod owen;
 pub mod sobol;
+pub mod owen;
+pub mod faure;
+pub mod radical;
+pub mod halton;
+pub mod hammersley;
+pub mod lattice;
+pub mod kronecker;
+pub mod weyl;
+pub mod jittered;
+pub mod latin;
+pub mod shift;
+pub mod other;
 
 /// Coordinates that a low-discrepancy sequence itself supplies; those beyond come from the counter hash of
 /// [`independent`].
@@ -33,11 +47,60 @@ pub enum Sequence {
     Sobol,
     /// Sobol' points under nested uniform (Owen) scrambling by a hash.
     SobolOwen,
+    /// Sobol' points under a random digital shift.
+    SobolShift,
+    /// Halton points: radical inverses in prime bases.
+    Halton,
+    /// Halton points, rotated at random (Cranley and Patterson).
+    HaltonRotation,
+    /// Halton points with Faure's permutations of the digits.
+    HaltonFaure,
+    /// The same, rotated.
+    HaltonFaureRotation,
+    /// A Hammersley set: i / N and radical inverses.
+    Hammersley,
+    /// The same, rotated.
+    HammersleyRotation,
+    /// A rank-1 lattice.
+    Lattice,
+    /// The same, rotated.
+    LatticeRotation,
+    /// Multiples of square roots of primes, modulo 1.
+    Weyl,
+    /// The same, rotated.
+    WeylRotation,
+    /// Multiples of powers of a harmonious number, modulo 1 (R2 and its kin).
+    Kronecker,
+    /// The same, rotated.
+    KroneckerRotation,
+    /// One uniform point in each rectangle of a grid, in every pair of coordinates.
+    Jittered,
+    /// One uniform point in each of N intervals, in every coordinate.
+    LatinHypercube,
 }
 
 impl Sequence {
     /// Every sequence, in the order in which they are listed to users.
-    pub const ALL: [Self; 3] = [Self::Independent, Self::Sobol, Self::SobolOwen];
+    pub const ALL: [Self; 18] = [
+        Self::Independent,
+        Self::Sobol,
+        Self::SobolOwen,
+        Self::SobolShift,
+        Self::Halton,
+        Self::HaltonRotation,
+        Self::HaltonFaure,
+        Self::HaltonFaureRotation,
+        Self::Hammersley,
+        Self::HammersleyRotation,
+        Self::Lattice,
+        Self::LatticeRotation,
+        Self::Weyl,
+        Self::WeylRotation,
+        Self::Kronecker,
+        Self::KroneckerRotation,
+        Self::Jittered,
+        Self::LatinHypercube,
+    ];
 
     /// The name in commands and files.
     pub const fn name(self) -> &'static str {
@@ -45,6 +108,21 @@ impl Sequence {
             Self::Independent => "independent",
             Self::Sobol => "sobol",
             Self::SobolOwen => "sobol-owen",
+            Self::SobolShift => "sobol-shift",
+            Self::Halton => "halton",
+            Self::HaltonRotation => "halton-rotation",
+            Self::HaltonFaure => "halton-faure",
+            Self::HaltonFaureRotation => "halton-faure-rotation",
+            Self::Hammersley => "hammersley",
+            Self::HammersleyRotation => "hammersley-rotation",
+            Self::Lattice => "lattice",
+            Self::LatticeRotation => "lattice-rotation",
+            Self::Weyl => "weyl",
+            Self::WeylRotation => "weyl-rotation",
+            Self::Kronecker => "kronecker",
+            Self::KroneckerRotation => "kronecker-rotation",
+            Self::Jittered => "jittered",
+            Self::LatinHypercube => "latin-hypercube",
         }
     }
 
@@ -55,7 +133,29 @@ impl Sequence {
 
     /// Whether a seed changes the points, that is whether replicates and a standard error exist.
     pub const fn is_randomised(self) -> bool {
-        !matches!(self, Self::Sobol)
+        !matches!(
+            self,
+            Self::Sobol
+                | Self::Halton
+                | Self::HaltonFaure
+                | Self::Hammersley
+                | Self::Lattice
+                | Self::Weyl
+                | Self::Kronecker
+        )
+    }
+
+    /// Whether the points are a set made for a known number of them, of which a first part is no sample.
+    pub const fn needs_number(self) -> bool {
+        matches!(
+            self,
+            Self::Hammersley
+                | Self::HammersleyRotation
+                | Self::Lattice
+                | Self::LatticeRotation
+                | Self::Jittered
+                | Self::LatinHypercube
+        )
     }
 }
 

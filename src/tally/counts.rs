@@ -18,6 +18,12 @@ impl Counts {
         self.0[cell].fetch_add(1, Ordering::Relaxed);
     }
 
+    /// This much more in a cell.
+    #[inline]
+    pub fn add_amount(&self, cell: usize, amount: u64) {
+        self.0[cell].fetch_add(amount, Ordering::Relaxed);
+    }
+
     /// Count of a cell.
     pub fn get(&self, cell: usize) -> u64 {
         self.0[cell].load(Ordering::Relaxed)

@@ -2,13 +2,14 @@
 //!
 //! [`walk()`] follows one photon; [`ledger`] counts where photons begin and end; [`census`] collects what a batch of photons
 //! did beside that: coordinates used, exceptions made; [`parallel`] runs ranges of photon indices over threads;
-//! [`attempts`] counts the points that photons by rejection take.
+//! [`attempts`] counts the points that photons by rejection take, [`weighted`] traces photons with weights for references.
 
 pub mod attempts;
 pub mod census;
 pub mod ledger;
 pub mod parallel;
 pub mod walk;
+pub mod weighted;
 
 pub use census::Census;
 pub use ledger::Ledger;

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use crate::bsdf::Throughput;
 use crate::sample::coordinates::Coordinates;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -19,7 +20,7 @@ use super::walk::{Sink, walk};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.
-const BATCH: u64 = 1 << 14;
+pub(super) const BATCH: u64 = 1 << 14;
 
 /// What a range of photons left beside the sink's sums.
 #[derive(Debug, Clone)]
@@ -69,14 +70,14 @@ pub struct How<'a> {
 /// The first coordinate of a Sobol' point is the bit-reversed index, scrambled digit by digit, so in this order
 /// neighbours have neighbouring first coordinates: the same emitter, the same table cell, nearly the same ray. They visit
 /// the same nodes of the search tree while these are in the cache. The sums do not depend on the order.
-struct Order {
+pub(super) struct Order {
     start: u64,
     length: u64,
     bits: u32,
 }
 
 impl Order {
-    fn new(range: &Range<u64>) -> Self {
+    pub(super) fn new(range: &Range<u64>) -> Self {
         let length = range.end.saturating_sub(range.start);
         Self { start: range.start, length, bits: length.max(2).next_power_of_two().trailing_zeros() }
     }
@@ -86,7 +87,14 @@ impl Order {
         1 << self.bits
     }
 
-    fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
+    /// Ranges of slots, one a task.
+    pub(super) fn batches(&self) -> impl ParallelIterator<Item = Range<u64>> + use<> {
+        let slots = self.slots();
+        let batch = move |k: u64| k * BATCH..slots.min((k + 1) * BATCH);
+        (0..slots.div_ceil(BATCH)).into_par_iter().map(batch)
+    }
+
+    pub(super) fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
         let Self { start, length, bits } = *self;
         slots
             .map(move |slot| slot.reverse_bits() >> (64 - bits))
@@ -95,23 +103,23 @@ impl Order {
     }
 }
 
-/// Traces the photons of these indices; `sink` makes one handle a batch, all of which add to the same sums.
-pub fn trace_range<P: Points, S: Sink>(
+/// Traces the photons of these indices, each of which starts with the throughput `carried`: [`crate::bsdf::Grey`] unless the
+/// scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
+pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     points: &P,
     range: Range<u64>,
+    carried: T,
     how: How<'_>,
     sink: impl Fn() -> S + Sync,
 ) -> Traced {
     let empty = || Traced::new(scene);
     let order = Order::new(&range);
-    let batches = order.slots().div_ceil(BATCH);
-    (0..batches)
-        .into_par_iter()
-        .fold(empty, |mut traced, batch| {
-            let slots = batch * BATCH..order.slots().min((batch + 1) * BATCH);
+    order
+        .batches()
+        .fold(empty, |mut traced, slots| {
             let before = traced.ledger.total_emitted();
-            trace_batch(scene, points, order.indices(slots), how, &mut sink(), &mut traced);
+            trace_batch(scene, points, order.indices(slots), carried, how, &mut sink(), &mut traced);
             (how.progress)(traced.ledger.total_emitted() - before);
             traced
         })
@@ -121,10 +129,11 @@ pub fn trace_range<P: Points, S: Sink>(
         })
 }
 
-fn trace_batch<P: Points, S: Sink>(
+fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     points: &P,
     indices: impl Iterator<Item = u64>,
+    carried: T,
     how: How<'_>,
     sink: &mut S,
     traced: &mut Traced,
@@ -141,7 +150,8 @@ fn trace_batch<P: Points, S: Sink>(
         };
         traced.ledger.begin(emitter);
         let exceptions = &mut traced.census.exceptions;
-        let end = walk(scene, emission, scene.start(emitter), &mut coordinates, sink, exceptions);
+        let start = scene.start(emitter);
+        let end = walk(scene, emission, start, carried, &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
         traced.census.count(coordinates.drawn(), coordinates.drawn_for());
     }

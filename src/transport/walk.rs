@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::bsdf::{Incidence, Outcome};
+use crate::bsdf::{Grey, Incidence, Outcome, Throughput};
 use crate::emitter::Emission;
 use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
 use crate::sample::coordinates::Chooser;
@@ -16,19 +16,21 @@ pub const MAX_EVENTS: u32 = 100_000;
 
 /// A photon reaching a surface, before anything happens to it.
 #[derive(Debug, Clone, Copy)]
-pub struct Arrival<'a> {
+pub struct Arrival<'a, T = Grey> {
     /// Where.
     pub hit: &'a Hit,
     /// The way it travels; unit.
     pub direction: DVec3,
     /// Events it has been through: 0 is direct light.
     pub events: u32,
+    /// What it carries.
+    pub carried: &'a T,
 }
 
-/// What takes the arrivals of photons.
-pub trait Sink {
+/// What takes the arrivals of photons that carry `T`.
+pub trait Sink<T = Grey> {
     /// A photon arrives.
-    fn arrive(&mut self, arrival: &Arrival<'_>);
+    fn arrive(&mut self, arrival: &Arrival<'_, T>);
 }
 
 /// How a photon ended.
@@ -44,10 +46,11 @@ pub enum End {
 
 /// Follows one photon from its emission to its end; the chooser decides, the sink sees every arrival.
 #[inline]
-pub fn walk<C: Chooser, S: Sink>(
+pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     emission: Emission,
     mut whereabouts: Whereabouts,
+    mut carried: T,
     chooser: &mut C,
     sink: &mut S,
     exceptions: &mut Exceptions,
@@ -59,7 +62,7 @@ pub fn walk<C: Chooser, S: Sink>(
         else {
             return End::Escaped;
         };
-        sink.arrive(&Arrival { hit: &hit, direction, events });
+        sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried });
         let sign = if hit.front { 1.0 } else { -1.0 };
         let at = Incidence {
             direction,
@@ -67,7 +70,7 @@ pub fn walk<C: Chooser, S: Sink>(
             smooth: hit.shading_normal * sign,
             front: hit.front,
         };
-        match scene.bsdf(hit.surface).interact(&at, chooser) {
+        match scene.bsdf(hit.surface).interact(&at, chooser, &mut carried) {
             Outcome::Absorbed => return End::Absorbed(hit.surface),
             Outcome::Leaves { direction: onward, through, corrected } => {
                 exceptions.corrected_directions += u64::from(corrected);

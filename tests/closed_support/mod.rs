@@ -7,7 +7,7 @@ pub mod quadrature;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use caustix::run::{Algorithm, Outcome, Plan, Settings, Variant, trace};
+use caustix::run::{Algorithm, Outcome, Plan, Settings, trace};
 use caustix::scene::Scene;
 use caustix::scene::build::build;
 use caustix::scene::description::Description;
@@ -49,7 +49,7 @@ pub fn run(scene: &Scene, sequence: Sequence, per_replicate: u64, replicates: u3
         photons: Some(per_replicate * u64::from(replicates)),
         replicates: Some(replicates),
         seed,
-        algorithm: Algorithm { sequence, ..Variant::QmcInverseReuse.into() },
+        algorithm: Algorithm { sequence, ..Algorithm::default() },
     };
     let plan = Plan::new(&settings).unwrap();
     let outcome = trace(scene, &plan, &AtomicBool::new(false), &|_| {}).unwrap();

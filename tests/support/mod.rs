@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub mod angles;
+pub mod cells;
 pub mod data;
 pub mod density;
 pub mod quadrature;

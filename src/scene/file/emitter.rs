@@ -1,4 +1,4 @@
-//! `[[emitter]]`: photometric, isotropic, collimated.
+//! `[[emitter]]`: photometric, isotropic, collimated, panel.
 
 use glam::DVec3;
 
@@ -15,10 +15,15 @@ enum Type {
     Photometric,
     Isotropic,
     Collimated,
+    Panel,
 }
 
-const TYPES: [(&str, Type); 3] =
-    [("photometric", Type::Photometric), ("isotropic", Type::Isotropic), ("collimated", Type::Collimated)];
+const TYPES: [(&str, Type); 4] = [
+    ("photometric", Type::Photometric),
+    ("isotropic", Type::Isotropic),
+    ("collimated", Type::Collimated),
+    ("panel", Type::Panel),
+];
 
 pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterDescription> {
     let place = table.place();
@@ -27,15 +32,13 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
     let name = given.map_or_else(|| format!("emitter {}", index + 1), |n| n.value);
     names.insert(table.document(), &name, name_place, index);
 
-    if table.is_unavailable("type", &["panel"], &TYPES.map(|(word, _)| word)) {
-        return None;
-    }
     let kind = table.word("type", &TYPES);
-    let kind = table.require("type", kind, "\"photometric\", \"isotropic\" or \"collimated\"")?;
+    let kind = table.require("type", kind, "\"photometric\", \"isotropic\", \"collimated\" or \"panel\"")?;
     table.call(match kind {
         Type::Photometric => "a photometric [[emitter]]",
         Type::Isotropic => "an isotropic [[emitter]]",
         Type::Collimated => "a collimated [[emitter]]",
+        Type::Panel => "a panel [[emitter]]",
     });
 
     let position = table.vector("position", &COORDINATE);
@@ -54,6 +57,12 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
             table.require("flux_lm", flux_lm, FLUX.words);
             let section = read_section(&mut table);
             (section.map(|section| EmitterShape::Collimated { section }), read_frame(&mut table))
+        }
+        Type::Panel => {
+            table.require("flux_lm", flux_lm, FLUX.words);
+            let size = table.numbers::<2>("size", &LENGTH);
+            let size = table.require("size", size, "[width, height] in metres");
+            (size.map(|[width, height]| EmitterShape::Panel { width, height }), read_frame(&mut table))
         }
     };
     table.finish();

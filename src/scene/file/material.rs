@@ -1,5 +1,6 @@
 //! `[material.NAME]`: dielectric, mirror, lambertian, absorber.
 
+use crate::bsdf::Reflectance;
 use crate::error::Kind;
 use crate::scene::description::{MaterialDescription, MaterialKind};
 use crate::scene::toml_table::{Interval, Table};
@@ -33,12 +34,12 @@ pub(super) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDes
         Type::Dielectric => read_dielectric(&mut table),
         Type::Mirror => {
             table.call("a mirror");
-            let reflectance = table.number("reflectance", &REFLECTANCE).unwrap_or(1.0);
-            Some(MaterialKind::Mirror { reflectance })
+            let reflectance = read_reflectance(&mut table);
+            Some(MaterialKind::Mirror { reflectance: reflectance.unwrap_or(Reflectance::grey(1.0)) })
         }
         Type::Lambertian => {
             table.call("a lambertian material");
-            let reflectance = table.number("reflectance", &REFLECTANCE);
+            let reflectance = read_reflectance(&mut table);
             let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
             reflectance.map(|reflectance| MaterialKind::Lambertian { reflectance })
         }
@@ -49,6 +50,11 @@ pub(super) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDes
     };
     table.finish();
     Some(MaterialDescription { name, kind: kind?, place })
+}
+
+/// A number, or `[r, g, b]`.
+fn read_reflectance(table: &mut Table<'_, '_>) -> Option<Reflectance> {
+    table.number_or_vector("reflectance", &REFLECTANCE).map(|rgb| Reflectance::rgb(rgb.to_array()))
 }
 
 fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {

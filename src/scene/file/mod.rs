@@ -17,7 +17,7 @@ use glam::DVec3;
 pub use self::heightfield::MOST_CELLS as MOST_HEIGHTFIELD_CELLS;
 
 use self::names::Names;
-use super::description::{Description, Place, Placed, RunDescription};
+use super::description::{CompareDescription, Description, Place, Placed, RunDescription};
 use super::document::Document;
 use super::source::{self, Base, Source};
 use super::toml_table::{Interval, Table};
@@ -28,6 +28,9 @@ pub const MOST_PARTS: usize = 4096;
 
 /// Most replicates.
 pub const MOST_REPLICATES: u64 = 65_536;
+
+/// Most reflections of `[compare]`: M of them take 2 M + 4 coordinates, and 64 are a sequence's own.
+pub const MOST_COMPARED_REFLECTIONS: u64 = 30;
 
 const COORDINATE: Interval = Interval { low: -1e9, high: 1e9, words: "a number of metres from -1e9 to 1e9" };
 const LENGTH: Interval = Interval { low: 1e-9, high: 1e9, words: "a length from 1e-9 to 1e9 m" };
@@ -78,6 +81,7 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<Description, Vec<Diag
         materials: parts.materials.into_iter().flatten().collect(),
         surfaces: parts.surfaces.into_iter().flatten().collect(),
         receivers: parts.receivers.into_iter().flatten().collect(),
+        compare: parts.compare,
         run: parts.run,
         warnings,
     })
@@ -89,6 +93,7 @@ struct Parts {
     materials: Vec<Option<super::description::MaterialDescription>>,
     surfaces: Vec<Option<super::description::SurfaceDescription>>,
     receivers: Vec<Option<super::description::ReceiverDescription>>,
+    compare: Option<CompareDescription>,
     run: RunDescription,
 }
 
@@ -149,9 +154,10 @@ impl Parts {
             let required = "a scene without a camera: it is not available yet";
             document.error_at(camera.place(), Kind::Unavailable, "[camera]", required);
         }
+        let compare = root.table("compare", "[compare]").and_then(read_compare);
         let run = root.table("run", "[run]").map(read_run).unwrap_or_default();
         root.finish();
-        Self { emitters, materials, surfaces, receivers, run }
+        Self { emitters, materials, surfaces, receivers, compare, run }
     }
 }
 
@@ -174,6 +180,15 @@ fn warn_unused(
             document.warn_at(place, Kind::Unknown, found, format!("a surface with material = \"{name}\""));
         }
     }
+}
+
+/// `[compare]`: reflections.
+fn read_compare(mut table: Table<'_, '_>) -> Option<CompareDescription> {
+    let words = format!("a whole number from 0 to {MOST_COMPARED_REFLECTIONS}");
+    let reflections = table.integer("reflections", 0, MOST_COMPARED_REFLECTIONS, &words);
+    let reflections = table.require("reflections", reflections, &words);
+    table.finish();
+    reflections.map(|r| CompareDescription { reflections: r.value as u32 })
 }
 
 /// `[run]`: photons, seed, replicates.

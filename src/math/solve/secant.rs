@@ -1,25 +1,13 @@
-//! Root finding that cannot leave its bracket.
+//! The secant method inside a shrinking bracket.
 
-/// A root and what it cost.
-#[derive(Debug, Clone, Copy)]
-pub struct Root<T> {
-    /// Where the function is within the tolerance of zero, or the bracket cannot be divided further.
-    pub x: f64,
-    /// What the function returned beside its value there.
-    pub by_product: T,
-    /// Function evaluations used.
-    pub evaluations: u32,
-}
-
-/// Evaluations after which only bisection steps are taken: secant steps that stall cannot keep the loop.
-const SECANT_EVALUATIONS: u32 = 12;
+use super::{OPEN_EVALUATIONS, Root, inside};
 
 /// Root of an increasing function on [low, high] by the secant method, kept inside a shrinking bracket.
 ///
 /// `f` returns its value and a by-product. `start` and `inverse_slope` (an estimate of 1 / f' there; any
-/// sign, zero or NaN is harmless) give the first two points. A secant step that leaves the bracket is replaced by bisection, so at most
-/// about `SECANT_EVALUATIONS` + 64 evaluations are used; the answer always lies in [low, high]. The function is taken
-/// to be negative at `low` and positive at `high`; neither is evaluated.
+/// sign, zero or NaN is harmless) give the first two points. A secant step that leaves the bracket is replaced by
+/// bisection, and so is every one after the first twelve evaluations. The function is taken to be negative at `low`
+/// and positive at `high`; neither is evaluated.
 #[inline]
 pub fn bracketed_secant<T>(
     mut low: f64,
@@ -29,7 +17,6 @@ pub fn bracketed_secant<T>(
     tolerance: f64,
     mut f: impl FnMut(f64) -> (f64, T),
 ) -> Root<T> {
-    let inside = |x: f64, low: f64, high: f64| x > low && x < high;
     let mut x = if inside(start, low, high) { start } else { low + 0.5 * (high - low) };
     let (mut fx, mut by_product) = f(x);
     let mut evaluations = 1;
@@ -44,8 +31,7 @@ pub fn bracketed_secant<T>(
             break; // The bracket is one ulp wide.
         }
         let secant = x - fx * inverse_slope;
-        let next =
-            if evaluations < SECANT_EVALUATIONS && inside(secant, low, high) { secant } else { middle };
+        let next = if evaluations < OPEN_EVALUATIONS && inside(secant, low, high) { secant } else { middle };
         let (value, extra) = f(next);
         evaluations += 1;
         inverse_slope = (next - x) / (value - fx);
@@ -90,7 +76,7 @@ mod tests {
     fn evaluations_are_bounded_on_hostile_functions() {
         for power in [5, 21, 101] {
             let r = root(0.0, 1.0, 0.999, 1e-9, |x: f64| x.powi(power) - 1e-30);
-            assert!(r.evaluations <= SECANT_EVALUATIONS + 70, "{power}: {r:?}");
+            assert!(r.evaluations <= OPEN_EVALUATIONS + 70, "{power}: {r:?}");
         }
     }
 }

@@ -1,0 +1,371 @@
+//! `caustix compare`: the error of every algorithm variant against a reference.
+
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::report::compare::{text::text, write_files};
+use crate::report::parts::{Found, Parts, from_bytes, to_bytes};
+use crate::run::{Algorithm, MAX_PHOTONS, Variant};
+use crate::scene::Scene;
+use crate::study::account::Events;
+use crate::study::cells::Grids;
+use crate::study::reference::{EMISSION_MAP, REPLICATES, Reference, ReferencePlan, trace_replicate};
+use crate::study::results::{self, Run, Study, VariantResult};
+use crate::study::runs::{LADDER_OCTAVES, Measure, ladder};
+use crate::study::table::Table;
+
+use super::progress::{INTERRUPTED, Progress, catch_interrupts};
+use super::render::{MAX_THREADS, load, make_directory, thread_pool};
+use super::{count, exit, fail, print, say, warn, whole};
+
+/// Photons of each run where none is named.
+const DEFAULT_PHOTONS: u64 = 1 << 20;
+/// Reference photons for each photon of a run where none is named.
+const REFERENCE_FACTOR: u64 = 100;
+/// Cells along each side of the grids where none is named.
+const DEFAULT_CELLS: [u32; 3] = [48, 128, 256];
+/// Variants beside the paper's with `--full`.
+const FULL: [&str; 7] = [
+    "mc:table",
+    "qmc:table",
+    "qmc:next-point",
+    "qmc-inverse:quadratic-newton",
+    "qmc-inverse-reuse:quadratic-newton",
+    "qmc-inverse-reuse:halton-rotation",
+    "qmc-inverse-reuse:independent",
+];
+
+/// Arguments of `caustix compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// Scene file; the built-in scene if absent.
+    pub scene: Option<PathBuf>,
+    /// Directory for the results and, in `parts/`, for what is finished: the same command goes on from there.
+    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
+    pub output: PathBuf,
+    /// Photons of the largest run of each variant and seed [default: 2^20].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub photons: Option<String>,
+    /// Variants, like mc,qmc,qmc:table,qmc-inverse-reuse:halton [default: the paper's four].
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    pub variants: Vec<String>,
+    /// Photons of the reference [default: 100 times N].
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub reference_photons: Option<String>,
+    /// Cells along each side of the grids that errors are measured on [default: 48,128,256].
+    #[arg(long, value_name = "K,K,...", value_delimiter = ',')]
+    pub cells: Vec<u32>,
+    /// More variants: every form of rejection, other solvers and sequences. In a scene with [compare], 10^7 photons.
+    #[arg(long)]
+    pub full: bool,
+    /// The least number of photons of which errors are taken; from there powers of two up to N [default: N / 256].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub from: Option<String>,
+    /// Point sets of each variant.
+    #[arg(long, value_name = "S", default_value = "4", allow_hyphen_values = true, value_parser = whole::<u32, 1, 1024>)]
+    pub seeds: u32,
+    /// The first seed; the others follow it.
+    #[arg(long, value_name = "K", default_value = "1", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
+    pub seed: u64,
+    /// Threads [default: all cores]. The errors do not depend on it.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_THREADS as u64 }>)]
+    pub threads: Option<u32>,
+    /// No progress bar and no table.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Runs the subcommand; the exit code.
+pub fn run(args: &CompareArgs) -> u8 {
+    match compare(args) {
+        Ok(code) => code,
+        Err(errors) => fail(&errors),
+    }
+}
+
+fn compare(args: &CompareArgs) -> std::result::Result<u8, Vec<Diagnostic>> {
+    let one = |e: Diagnostic| vec![e];
+    let (scene, _) = load(args.scene.as_deref())?;
+    warn(&scene.warnings);
+    let asked = Asked::new(args, &scene).map_err(one)?;
+    make_directory(&args.output).map_err(one)?;
+    catch_interrupts();
+    let pool = thread_pool(args.threads).map_err(one)?;
+    let progress = Progress::new(args.quiet, asked.work());
+    let job = Job { scene: &scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
+    let study = pool.install(|| job.study(args)).map_err(one)?;
+    progress.finish();
+    finish(args, &job, study.as_ref())
+}
+
+/// Writes what there is and says how it stands.
+fn finish(
+    args: &CompareArgs,
+    job: &Job<'_>,
+    study: Option<&Study>,
+) -> std::result::Result<u8, Vec<Diagnostic>> {
+    if let Some(study) = study {
+        let table = Table::new(study);
+        let files = write_files(study, &table, &args.output);
+        if !args.quiet {
+            print(&text(study, &table));
+            print(&format!("written to {}\n", args.output.display()));
+        }
+        if !files.errors.is_empty() {
+            return Err(files.errors);
+        }
+    }
+    if !INTERRUPTED.load(Ordering::Relaxed) {
+        return Ok(exit::DONE);
+    }
+    let what =
+        if study.is_some() { "the runs finished by then are in the table" } else { "no run was finished" };
+    say(&format!(
+        "caustix: interrupted; {what}. The same command goes on from the parts in {}",
+        job.parts.directory().display()
+    ));
+    Ok(exit::INTERRUPTED)
+}
+
+/// What is asked for, made definite.
+struct Asked {
+    grids: Grids,
+    algorithms: Vec<Algorithm>,
+    seeds: Vec<u64>,
+    photons: u64,
+    ladder: Vec<u64>,
+    reference: ReferencePlan,
+}
+
+impl Asked {
+    fn new(args: &CompareArgs, scene: &Scene) -> Result<Self> {
+        let cells = if args.cells.is_empty() { &DEFAULT_CELLS[..] } else { &args.cells };
+        let mut cells = cells.to_vec();
+        cells.dedup();
+        let grids = Grids::new(scene, &cells)?;
+        let photons = count("--photons", args.photons.as_ref())?.unwrap_or(DEFAULT_PHOTONS);
+        let from = count("--from", args.from.as_ref())?.unwrap_or((photons >> LADDER_OCTAVES).max(1));
+        if photons == 0 || photons > MAX_PHOTONS || from == 0 || from > photons {
+            return Err(Diagnostic::new(
+                Kind::Range,
+                format!("errors from {from} to {photons} photons"),
+                "1 to 2^48 photons, rising",
+            ));
+        }
+        let seeds: Vec<u64> = (0..u64::from(args.seeds)).map(|k| args.seed.wrapping_add(k)).collect();
+        let reference_photons = count("--reference-photons", args.reference_photons.as_ref())?
+            .unwrap_or(photons.saturating_mul(REFERENCE_FACTOR));
+        Ok(Self {
+            grids,
+            algorithms: algorithms(args)?,
+            ladder: ladder(from, photons),
+            photons,
+            reference: ReferencePlan::new(reference_photons, &seeds)?,
+            seeds,
+        })
+    }
+
+    /// Seeds that make a difference to an algorithm.
+    fn seeds_of(&self, algorithm: Algorithm) -> &[u64] {
+        if algorithm.sequence.is_randomised() { &self.seeds } else { &self.seeds[..1] }
+    }
+
+    /// Photons of one run: points that are made for their number are traced anew for each.
+    fn photons_of(&self, algorithm: Algorithm) -> u64 {
+        if algorithm.sequence.needs_number() { self.ladder.iter().sum() } else { self.photons }
+    }
+
+    /// Photons to be traced in all.
+    fn work(&self) -> u64 {
+        let of = |a: &Algorithm| self.seeds_of(*a).len() as u64 * self.photons_of(*a);
+        self.algorithms.iter().map(of).sum::<u64>().saturating_add(self.reference.photons())
+    }
+}
+
+fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
+    let paper = Variant::ALL.map(Variant::name);
+    let names: Vec<&str> = match (args.variants.is_empty(), args.full) {
+        (false, _) => args.variants.iter().map(String::as_str).collect(),
+        (true, false) => paper.to_vec(),
+        (true, true) => paper.into_iter().chain(FULL).collect(),
+    };
+    let mut algorithms: Vec<Algorithm> = Vec::new();
+    for name in names {
+        let algorithm = Algorithm::parse(name.trim())?;
+        if algorithms.contains(&algorithm) {
+            return Err(Diagnostic::new(
+                Kind::Range,
+                format!("variant {name} twice"),
+                "every variant once in --variants",
+            ));
+        }
+        algorithms.push(algorithm);
+    }
+    Ok(algorithms)
+}
+
+/// A study under way.
+struct Job<'a> {
+    scene: &'a Scene,
+    asked: Asked,
+    parts: Parts,
+    progress: &'a Progress,
+}
+
+impl Job<'_> {
+    /// The study, as far as it is; `None` where not even the reference is finished, or no run.
+    fn study(&self, args: &CompareArgs) -> Result<Option<Study>> {
+        let Some((reference, key)) = self.reference()? else { return Ok(None) };
+        let runs = self.runs(&reference, &key)?;
+        if runs.iter().all(Vec::is_empty) {
+            return Ok(None);
+        }
+        let events = Events::count(self.scene);
+        let asked = &self.asked;
+        let variant = |(algorithm, runs): (&Algorithm, Vec<Run>)| VariantResult {
+            name: algorithm.name(),
+            description: algorithm.description(),
+            runs,
+            account: Some(events.account(self.scene, *algorithm)),
+        };
+        Ok(Some(Study {
+            caustix_version: env!("CARGO_PKG_VERSION").into(),
+            scene_name: self.scene.identity.name.clone(),
+            scene_sha256: self.scene.identity.sha256.clone(),
+            built_in: args.scene.is_none(),
+            command: command_line(),
+            receivers: asked.grids.names.clone(),
+            grids: asked.grids.labels.clone(),
+            asked_photons: asked.photons,
+            ladder: asked.ladder.clone(),
+            seeds: asked.seeds.clone(),
+            threads: rayon::current_num_threads(),
+            reference: results::Reference {
+                photons: asked.reference.photons(),
+                replicates: REPLICATES,
+                sequence: asked.reference.sequence.name().into(),
+                emission_map: EMISSION_MAP.into(),
+                seed: asked.reference.seed,
+                own_nrms: reference.own_nrms.clone(),
+                factor: asked.reference.photons() as f64 / asked.photons as f64,
+            },
+            variants: asked.algorithms.iter().zip(runs).map(variant).collect(),
+            warnings: asked.grids.warnings.clone(),
+        }))
+    }
+
+    /// The reference and its key; `None` after an interrupt.
+    fn reference(&self) -> Result<Option<(Reference, String)>> {
+        let plan = &self.asked.reference;
+        let key = format!(
+            "{}\nreference: {} seed {}, {REPLICATES} x {} photons, {EMISSION_MAP}\ngrids: {:?} of {:?}",
+            self.scene_key(),
+            plan.sequence.name(),
+            plan.seed,
+            plan.photons_per_replicate,
+            self.asked.grids.labels,
+            self.asked.grids.names,
+        );
+        let cells = self.asked.grids.cell_count();
+        let mut replicates = Vec::new();
+        for replicate in 0..REPLICATES {
+            self.progress.say(format!("reference {} of {REPLICATES}", replicate + 1));
+            let part = format!("{key}\nreplicate {replicate}");
+            let found = self.found("reference", &part).and_then(|bytes| from_bytes(&bytes, cells));
+            if let Some(counts) = found {
+                self.progress.add(plan.photons_per_replicate);
+                replicates.push(counts);
+                continue;
+            }
+            let traced =
+                trace_replicate(self.scene, &self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
+                    self.progress.add(n);
+                })?;
+            let Some(counts) = traced else { return Ok(None) };
+            self.parts.store("reference", &part, &to_bytes(&counts))?;
+            replicates.push(counts);
+        }
+        Ok(Some((Reference::new(self.scene, &self.asked.grids, plan, &replicates), key)))
+    }
+
+    /// Every run that is finished, by variant. Variants take turns, so that a machine that gets slower or faster does so
+    /// for all of them.
+    fn runs(&self, reference: &Reference, reference_key: &str) -> Result<Vec<Vec<Run>>> {
+        let asked = &self.asked;
+        let measure = Measure { scene: self.scene, grids: &asked.grids, reference };
+        let mut runs = vec![Vec::new(); asked.algorithms.len()];
+        for (k, seed) in asked.seeds.iter().enumerate() {
+            for (algorithm, runs_of) in asked.algorithms.iter().zip(&mut runs) {
+                if !asked.seeds_of(*algorithm).contains(seed) {
+                    continue;
+                }
+                self.progress.say(format!("{}, seed {} of {}", algorithm.name(), k + 1, asked.seeds.len()));
+                match self.run(&measure, *algorithm, *seed, reference_key)? {
+                    Some(found) => runs_of.extend(found),
+                    None => return Ok(runs),
+                }
+            }
+        }
+        Ok(runs)
+    }
+
+    /// One point set of one algorithm, found or traced; `None` after an interrupt.
+    fn run(
+        &self,
+        measure: &Measure<'_>,
+        algorithm: Algorithm,
+        seed: u64,
+        reference_key: &str,
+    ) -> Result<Option<Vec<Run>>> {
+        let asked = &self.asked;
+        let key = format!("{reference_key}\nrun: {} seed {seed}, N {:?}", algorithm.name(), asked.ladder);
+        let found = self.found("run", &key);
+        if let Some(found) = found.and_then(|bytes| serde_json::from_slice(&bytes).ok()) {
+            self.progress.add(asked.photons_of(algorithm));
+            return Ok(Some(found));
+        }
+        let progress = |n| self.progress.add(n);
+        let traced = measure.ladder(algorithm, seed, &asked.ladder, &INTERRUPTED, &progress)?;
+        if let Some(traced) = &traced {
+            let bytes = serde_json::to_vec_pretty(traced).map_err(|e| {
+                Diagnostic::new(Kind::Io, format!("\"{e}\" while writing a run"), "a run as text")
+            })?;
+            self.parts.store("run", &key, &bytes)?;
+        }
+        Ok(traced)
+    }
+
+    /// All that a scene's photons depend on.
+    fn scene_key(&self) -> String {
+        let identity = &self.scene.identity;
+        let mut key = format!("caustix {}\nscene {}", env!("CARGO_PKG_VERSION"), identity.sha256);
+        for (file, sha256) in &identity.files {
+            key.push_str(&format!("\nfile {sha256} {file}"));
+        }
+        key
+    }
+
+    fn found(&self, kind: &str, key: &str) -> Option<Vec<u8>> {
+        match self.parts.load(kind, key) {
+            Found::Whole(content) => Some(content),
+            Found::Missing => None,
+            Found::Damaged(diagnostic) => {
+                self.progress.aside(|| say(&format!("warning: {diagnostic}")));
+                None
+            }
+        }
+    }
+}
+
+/// The command as it was typed, without the folder that the program lies in.
+fn command_line() -> String {
+    let quoted = |word: String| {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:^=+".contains(c);
+        if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{word}'") }
+    };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("caustix".to_string()).chain(words).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,66 @@
+//! The progress bar, and Ctrl-C.
+
+use std::io::IsTerminal;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::{exit, say};
+
+/// Set by the first Ctrl-C; the second ends the process at once.
+pub(super) static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// Makes Ctrl-C set [`INTERRUPTED`].
+pub(super) fn catch_interrupts() {
+    let handler = || {
+        if INTERRUPTED.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(exit::INTERRUPTED));
+        }
+    };
+    // Fails only where a handler is set already; then Ctrl-C does what that one does.
+    if ctrlc::set_handler(handler).is_err() {
+        say("caustix: Ctrl-C cannot be caught here; it will end the run without results");
+    }
+}
+
+/// A bar over photons on a terminal, nothing elsewhere.
+#[derive(Debug)]
+pub(super) struct Progress(ProgressBar);
+
+impl Progress {
+    /// A bar over this many photons.
+    pub(super) fn new(quiet: bool, photons: u64) -> Self {
+        let visible = !quiet && std::io::stderr().is_terminal();
+        let target =
+            if visible { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(Some(photons), target);
+        let template =
+            "{msg} {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.enable_steady_tick(Duration::from_millis(250));
+        Self(bar)
+    }
+
+    /// What is being done.
+    pub(super) fn say(&self, what: impl Into<std::borrow::Cow<'static, str>>) {
+        self.0.set_message(what);
+    }
+
+    /// This many more photons are done.
+    pub(super) fn add(&self, photons: u64) {
+        self.0.inc(photons);
+    }
+
+    /// Something to stderr, above the bar.
+    pub(super) fn aside(&self, write: impl FnOnce()) {
+        self.0.suspend(write);
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}

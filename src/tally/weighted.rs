@@ -1,0 +1,154 @@
+//! Receivers of weighted photons: sums of weights by channel in the cells of a scene's receivers.
+//!
+//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of photons and
+//! of arrivals a photon can make, so that no sum can overflow. Integers may be added in any order, by any thread, and give
+//! the same bits; each arrival is rounded by at most half a quantum.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::bsdf::Fixed;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::geometry::Geometry;
+use crate::scene::receiver::Receiver;
+use crate::transport::{Arrival, Sink};
+
+use super::receiver::Routes;
+
+/// Most cells of a weighted tally: 24 bytes each.
+pub const MOST_WEIGHTED_CELLS: usize = 1 << 24;
+
+/// Most bits after the point: a weight of 1 is then exact as an f64, too.
+const MOST_FRACTION_BITS: u32 = 52;
+/// Fewest: an arrival is rounded by at most 2^-33 of the flux of a photon.
+const FEWEST_FRACTION_BITS: u32 = 32;
+
+/// The sums of all receivers of a scene.
+#[derive(Debug)]
+pub struct WeightedReceivers<'s> {
+    routes: Routes<'s>,
+    /// Where each receiver's cells begin.
+    first: Vec<usize>,
+    sums: Vec<[AtomicU64; 3]>,
+    fraction_bits: u32,
+}
+
+impl<'s> WeightedReceivers<'s> {
+    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at most `arrivals`
+    /// arrivals of weights from 0 to 1.
+    ///
+    /// # Errors
+    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the point.
+    pub fn new(
+        geometry: &'s Geometry,
+        receivers: &'s [Receiver],
+        photons: u64,
+        arrivals: u32,
+    ) -> Result<Self> {
+        // Every arrival might fall into one cell: its sum stays below 2^64.
+        let most = u128::from(photons) * u128::from(arrivals);
+        let whole_bits = u128::BITS - most.leading_zeros();
+        let fraction_bits = u64::BITS.saturating_sub(whole_bits).min(MOST_FRACTION_BITS);
+        if fraction_bits < FEWEST_FRACTION_BITS {
+            return Err(Diagnostic::new(
+                Kind::Limit,
+                format!("{photons} weighted photons of {arrivals} arrivals"),
+                "fewer than 2^32 arrivals, so that their weights keep 32 bits after the point",
+            ));
+        }
+        let mut cells = 0;
+        let mut first = Vec::with_capacity(receivers.len());
+        for receiver in receivers {
+            first.push(cells);
+            cells += receiver.cells.len();
+        }
+        if cells > MOST_WEIGHTED_CELLS {
+            return Err(Diagnostic::new(
+                Kind::Limit,
+                format!("{cells} cells of receivers for weighted photons"),
+                format!("at most {MOST_WEIGHTED_CELLS}"),
+            ));
+        }
+        let sums = (0..cells).map(|_| std::array::from_fn(|_| AtomicU64::new(0))).collect();
+        Ok(Self { routes: Routes::new(geometry, receivers), first, sums, fraction_bits })
+    }
+
+    /// A handle for one batch of photons; all handles add to the same sums.
+    pub fn sink(&self) -> WeightedSink<'_, 's> {
+        WeightedSink { receivers: self, scale: self.scale() }
+    }
+
+    /// Number of cells of all receivers, one after another.
+    pub fn len(&self) -> usize {
+        self.sums.len()
+    }
+
+    /// Whether there are no cells.
+    pub fn is_empty(&self) -> bool {
+        self.sums.is_empty()
+    }
+
+    /// Sum of the weights that arrived in a cell, by channel, in photons.
+    pub fn weight(&self, cell: usize) -> [f64; 3] {
+        self.quanta(cell).map(|quanta| quanta as f64 / self.scale())
+    }
+
+    /// The same in quanta of 2^-[`Self::fraction_bits`] photons: exact.
+    pub fn quanta(&self, cell: usize) -> [u64; 3] {
+        std::array::from_fn(|channel| self.sums[cell][channel].load(Ordering::Relaxed))
+    }
+
+    /// Bits after the point.
+    pub fn fraction_bits(&self) -> u32 {
+        self.fraction_bits
+    }
+
+    fn scale(&self) -> f64 {
+        (1u64 << self.fraction_bits) as f64
+    }
+}
+
+/// Adds weighted arrivals to a scene's receivers.
+#[derive(Debug, Clone, Copy)]
+pub struct WeightedSink<'r, 's> {
+    receivers: &'r WeightedReceivers<'s>,
+    scale: f64,
+}
+
+impl Sink<Fixed> for WeightedSink<'_, '_> {
+    #[inline]
+    fn arrive(&mut self, arrival: &Arrival<'_, Fixed>) {
+        let all = self.receivers;
+        // Rounded to the nearest quantum; at most `scale`, because weights are at most 1.
+        let quanta = arrival.carried.weight().map(|w| (w * self.scale + 0.5) as u64);
+        all.routes.each_cell(arrival, |receiver, cell| {
+            for (sum, quanta) in all.sums[all.first[receiver] + cell].iter().zip(quanta) {
+                sum.fetch_add(quanta, Ordering::Relaxed);
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quantum_leaves_room_for_every_arrival() {
+        let geometry = Geometry::build(Vec::new()).unwrap();
+        let bits = |photons, arrivals| WeightedReceivers::new(&geometry, &[], photons, arrivals);
+        for (photons, arrivals, expected) in [
+            (1, 1, 52),
+            (10_000_000, 5, 38), // 5e7 < 2^26
+            ((1 << 24) - 1, 1, 40),
+            (1 << 24, 1, 39),
+            ((1 << 32) - 1, 1, 32),
+        ] {
+            let tally = bits(photons, arrivals).unwrap();
+            assert_eq!(tally.fraction_bits(), expected, "{photons} x {arrivals}");
+            let most = (u128::from(photons) * u128::from(arrivals)) << tally.fraction_bits();
+            assert!(most <= u128::from(u64::MAX));
+        }
+        assert!(bits(1 << 32, 1).is_err());
+        assert!(bits(u64::MAX, u32::MAX).is_err());
+    }
+}
