@@ -47,9 +47,10 @@ fn directions_are_written_in_the_files_own_angles() {
             assert!((direction.length() - 1.0).abs() < 1e-14);
             let (v, h) = lamp.angles_deg(kind, direction);
             assert!((v - vertical).abs() < 1e-11, "{file}: {v} {line}");
-            let across = if kind == PhotometricType::B { vertical } else { horizontal };
-            let near_pole = 1e-11 / (direction.dot(lamp.a).abs() - 1.0).abs().sqrt().max(1e-6);
-            assert!((h - horizontal).abs() < near_pole.max(1e-11), "{file}: {h} {line} {across}");
+            // The angle about a pole is as uncertain as the direction's distance from the pole is small.
+            let axis = if kind == PhotometricType::C { lamp.a } else { lamp.u };
+            let sine = if kind == PhotometricType::B { 1.0 } else { direction.cross(axis).length() };
+            assert!((h - horizontal).abs() < 1e-11 / sine, "{file}: {h} {line}");
             assert!(web.intensity_cd(vertical, horizontal) > 0.0, "{line}");
             rows += 1;
         }
@@ -103,7 +104,7 @@ fn the_table_says_what_was_tested_and_how() {
     for (words, says) in [
         (vec!["--variant", "qmc:next-point"], ["points of the sequence", "an upper bound", "cell means"]),
         (vec!["--sequence", "sobol"], ["sobol; inverse functions", "an upper bound", "discrepancy"]),
-        (vec!["--variant", "mc"], ["rejection inside the cell", "exact", "KS phi | theta"]),
+        (vec!["--variant", "mc"], ["rejection inside the cell", "p-values hold", "KS phi | theta"]),
     ] {
         let file = own("wavy_glass.ies");
         let (code, out, _) = sample(&[&[file.as_str(), "-n", "20000"], &words[..]].concat());

@@ -144,7 +144,7 @@ pub struct SampleArgs {
     /// Photometric file (IES LM-63).
     pub file: PathBuf,
     /// Directions to sample, like 1e6 or 2^20.
-    #[arg(short = 'n', long = "samples", value_name = "N", allow_hyphen_values = true)]
+    #[arg(short = 'n', value_name = "N", allow_hyphen_values = true)]
     pub samples: String,
     /// Algorithm variant, as for `render` [default: qmc-inverse-reuse].
     #[arg(long, value_name = "V")]

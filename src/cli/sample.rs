@@ -28,21 +28,22 @@ const LEAST_REPLICATE: u64 = 64;
 pub fn run(args: &SampleArgs) -> u8 {
     match certify(args) {
         Ok(report) => {
-            let printed = if args.json { json(&report) } else { Ok(text(&report)) };
-            match printed {
+            match if args.json { json(&report) } else { Ok(text(&report)) } {
                 Ok(text) => print(&text),
                 Err(error) => return fail(&[error]),
             }
-            if report.certificate.passed {
-                return exit::DONE;
-            }
-            for failure in report.certificate.failures() {
-                say(&format!("certificate failed: {failure}"));
-            }
-            exit::WRONG
+            verdict(&report.certificate)
         }
         Err(error) => fail(&[error]),
     }
+}
+
+/// The exit code of a certificate; what failed is said.
+fn verdict(certificate: &Certificate) -> u8 {
+    for failure in certificate.failures() {
+        say(&format!("certificate failed: {failure}"));
+    }
+    if certificate.passed { exit::DONE } else { exit::WRONG }
 }
 
 /// Everything that `--json` says. Names are a contract: they are only added to.
@@ -228,10 +229,10 @@ fn text(report: &Report) -> String {
     }
     out.push('\n');
     out.push_str(match certificate.points {
-        PointKind::Random => "Expected is the file's own candela, integrated by quadrature. The p-values are exact.\n",
+        PointKind::Random => "Expected is the file's own candela, integrated by quadrature. The p-values hold.\n",
         PointKind::LowDiscrepancy => {
             "Expected is the file's own candela, integrated by quadrature. The points are no random points: p-values of\n\
-             counts, KS and discrepancy are what random points would do, an upper bound; those of cell means are exact.\n"
+             counts, KS and discrepancy are what random points would do, an upper bound; those of cell means hold.\n"
         }
     });
     let verdict = if certificate.passed { "passed" } else { "FAILED" };
@@ -256,5 +257,45 @@ fn chance(p: f64) -> String {
         "< 1e-15".into()
     } else {
         format!("{p:.1e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certificate::Draw;
+
+    #[test]
+    fn a_certificate_that_fails_is_exit_1_and_told() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/ies/downlight.ies");
+        let photometry = lm63::read(file).unwrap();
+        let density = Density::new(&photometry.web).unwrap();
+        let judged = |theta_rad: f64| {
+            let mut judge = Judge::new(&density, PointKind::Random);
+            // All in one direction, whatever the file says.
+            (0..if theta_rad > 0.0 { 1000 } else { 0 })
+                .for_each(|_| judge.draw(Draw { theta_rad, phi_rad: 1.0, coordinates: 2 }));
+            judge.certificate()
+        };
+        assert_eq!(verdict(&judged(0.0)), exit::DONE);
+        let failed = judged(0.7);
+        assert_eq!(verdict(&failed), exit::WRONG);
+        let told = failed.failures().join("\n");
+        assert!(told.contains("chi-square (counts of the table's cells): corrected p below 1e-15"), "{told}");
+        let report = Report {
+            file: file.to_owned(),
+            photometric_type: "C",
+            variant: "mc".to_owned(),
+            sequence: "independent",
+            seed: 1,
+            certificate: failed,
+            points_per_sample: 1.0,
+            ns_per_sample: 1.0,
+            warnings: Vec::new(),
+            description: String::new(),
+        };
+        assert!(text(&report).contains("FAILED  counts of the table's cells"));
+        assert!(text(&report).ends_with("certificate       FAILED\n"));
+        assert!(json(&report).unwrap().contains("\"passed\": false"));
     }
 }
