@@ -55,7 +55,7 @@ fn legendre(x: f64) -> (f64, f64) {
 }
 
 /// The two nodes of the two-point rule on [0, 1], 1/2 -+ 1/sqrt(12); their weights are 1/2. Exact for cubics.
-pub const TWO_POINT: [f64; 2] = [0.211_324_865_405_187_12, 0.788_675_134_594_812_9];
+pub const TWO_POINT: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 #[cfg(test)]
 mod tests {
