@@ -193,7 +193,7 @@ fn the_room_is_closed_and_has_276_triangles() {
     for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
         let outcome = run(&scene, sequence, 1 << 16, 8, seed);
         assert_eq!(outcome.ledger.escaped, 0);
-        assert_eq!(outcome.totals.sum.iter().sum::<u64>() > outcome.photons, true);
+        assert!(outcome.totals.sum.iter().sum::<u64>() > outcome.photons);
     }
 }
 

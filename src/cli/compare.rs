@@ -90,6 +90,9 @@ fn compare(args: &CompareArgs) -> std::result::Result<u8, Vec<Diagnostic>> {
     let one = |e: Diagnostic| vec![e];
     let (scene, _) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
+    if scene.compared_reflections.is_some() {
+        return super::compare_room::compare(args, &scene);
+    }
     let asked = Asked::new(args, &scene).map_err(one)?;
     make_directory(&args.output).map_err(one)?;
     catch_interrupts();
@@ -262,7 +265,7 @@ impl Job<'_> {
         let plan = &self.asked.reference;
         let key = format!(
             "{}\nreference: {} seed {}, {REPLICATES} x {} photons, {EMISSION_MAP}\ngrids: {:?} of {:?}",
-            self.scene_key(),
+            scene_key(self.scene),
             plan.sequence.name(),
             plan.seed,
             plan.photons_per_replicate,
@@ -274,7 +277,8 @@ impl Job<'_> {
         for replicate in 0..REPLICATES {
             self.progress.say(format!("reference {} of {REPLICATES}", replicate + 1));
             let part = format!("{key}\nreplicate {replicate}");
-            let found = self.found("reference", &part).and_then(|bytes| from_bytes(&bytes, cells));
+            let found = found(&self.parts, self.progress, "reference", &part)
+                .and_then(|bytes| from_bytes(&bytes, cells));
             if let Some(counts) = found {
                 self.progress.add(plan.photons_per_replicate);
                 replicates.push(counts);
@@ -322,7 +326,7 @@ impl Job<'_> {
     ) -> Result<Option<Vec<Run>>> {
         let asked = &self.asked;
         let key = format!("{reference_key}\nrun: {} seed {seed}, N {:?}", algorithm.name(), asked.ladder);
-        let found = self.found("run", &key);
+        let found = found(&self.parts, self.progress, "run", &key);
         if let Some(found) = found.and_then(|bytes| serde_json::from_slice(&bytes).ok()) {
             self.progress.add(asked.photons_of(algorithm));
             return Ok(Some(found));
@@ -337,25 +341,26 @@ impl Job<'_> {
         }
         Ok(traced)
     }
+}
 
-    /// All that a scene's photons depend on.
-    fn scene_key(&self) -> String {
-        let identity = &self.scene.identity;
-        let mut key = format!("caustix {}\nscene {}", env!("CARGO_PKG_VERSION"), identity.sha256);
-        for (file, sha256) in &identity.files {
-            key.push_str(&format!("\nfile {sha256} {file}"));
-        }
-        key
+/// All that a scene's photons depend on.
+pub(super) fn scene_key(scene: &Scene) -> String {
+    let identity = &scene.identity;
+    let mut key = format!("caustix {}\nscene {}", env!("CARGO_PKG_VERSION"), identity.sha256);
+    for (file, sha256) in &identity.files {
+        key.push_str(&format!("\nfile {sha256} {file}"));
     }
+    key
+}
 
-    fn found(&self, kind: &str, key: &str) -> Option<Vec<u8>> {
-        match self.parts.load(kind, key) {
-            Found::Whole(content) => Some(content),
-            Found::Missing => None,
-            Found::Damaged(diagnostic) => {
-                self.progress.aside(|| say(&format!("warning: {diagnostic}")));
-                None
-            }
+/// A part that is there and whole; one that is damaged is told, and made again.
+pub(super) fn found(parts: &Parts, progress: &Progress, kind: &str, key: &str) -> Option<Vec<u8>> {
+    match parts.load(kind, key) {
+        Found::Whole(content) => Some(content),
+        Found::Missing => None,
+        Found::Damaged(diagnostic) => {
+            progress.aside(|| say(&format!("warning: {diagnostic}")));
+            None
         }
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod compare;
+mod compare_room;
 pub mod photometry;
 mod progress;
 pub mod render;
