@@ -124,6 +124,21 @@ fn wrong_requests_are_told() {
         (vec![file.as_str(), "-n", "-5"], 1, vec!["-n", "a whole number from 1"]),
         (vec![file.as_str(), "-n", "9", "--variant", "magic"], 1, vec!["variant magic", "qmc-inverse-reuse"]),
         (vec![file.as_str(), "-n", "9", "--sequence", "magic"], 1, vec!["--sequence magic", "sobol-owen"]),
+        (
+            vec![
+                file.as_str(),
+                "-n",
+                "9",
+                "--variant",
+                "qmc:next-point",
+                "--sequence",
+                "lattice",
+                "-o",
+                "x.csv",
+            ],
+            1,
+            vec!["qmc:next-point:lattice", "goes on beyond N points"],
+        ),
         (vec!["no_such.ies", "-n", "9"], 1, vec!["no_such.ies"]),
         (vec![file.as_str(), "-n", "9", "-o", "no/such/x.csv"], 1, vec!["no/such/x.csv"]),
     ] {
@@ -131,4 +146,5 @@ fn wrong_requests_are_told() {
         assert_eq!((got, out.as_str()), (code, ""), "{words:?}: {err}");
         assert!(parts.iter().all(|part| err.contains(part)), "{words:?}: {err}");
     }
+    assert!(!std::path::Path::new("x.csv").exists());
 }

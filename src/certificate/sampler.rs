@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 
 use super::{Draw, PointKind};
-use crate::error::Result;
+use crate::error::{Diagnostic, Kind, Result};
 use crate::run::Algorithm;
 use crate::run::tracer::{PointSet, UsePoints};
 use crate::sample::coordinates::{Coordinates, Purpose};
@@ -65,7 +65,7 @@ pub fn made_from(sequence: Sequence) -> PointKind {
 /// `sink` says whether to go on.
 ///
 /// # Errors
-/// A sequence that cannot have this many points.
+/// A sequence that cannot have this many points or, where rejection skips points, more.
 pub fn sample(
     grid: &Grid,
     algorithm: &Algorithm,
@@ -76,6 +76,13 @@ pub fn sample(
 ) -> Result<Effort> {
     let points = PointSet { sequence: algorithm.sequence, seed, replicate, number };
     let sampling = algorithm.sampling();
+    if sampling.skips_points() && algorithm.sequence.needs_number() {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            format!("variant {}", algorithm.name()),
+            "a sequence that goes on beyond N points, for rejection that retries with the next one",
+        ));
+    }
     points.provide(Run { grid, sampling, reuse: algorithm.variant.reuses(), number, sink })
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::path::Path;
 
 use glam::{DMat3, DVec3};
 use serde::Serialize;
@@ -78,25 +79,15 @@ fn certify(args: &SampleArgs) -> Result<Report> {
         .map_err(|e| e.in_file(&args.file))?;
     let density = Density::new(&photometry.web).map_err(|e| e.in_file(&args.file))?;
     let mut judge = Judge::new(&density, made_from(algorithm.sequence));
-    let mut effort = match &args.output {
-        None => sample(&grid, &algorithm, args.seed, 0, number, |block| {
+    let mut first = |sink: &mut dyn FnMut(&[Sampled]) -> bool| {
+        sample(&grid, &algorithm, args.seed, 0, number, |block| {
             block.iter().for_each(|s| judge.draw(s.draw));
-            true
-        })?,
-        Some(path) => {
-            let mut taken = Ok(Effort::default());
-            write_atomically(path, |out| {
-                let mut table = Table::new(out, kind)?;
-                let mut written = Ok(());
-                taken = sample(&grid, &algorithm, args.seed, 0, number, |block| {
-                    block.iter().for_each(|s| judge.draw(s.draw));
-                    written = table.rows(block);
-                    written.is_ok()
-                });
-                written
-            })?;
-            taken?
-        }
+            sink(block)
+        })
+    };
+    let mut effort = match &args.output {
+        None => first(&mut |_| true)?,
+        Some(path) => write_directions(path, kind, first)?,
     };
     let each = number / u64::from(REPLICATES);
     let is_repeatable =
@@ -124,6 +115,29 @@ fn certify(args: &SampleArgs) -> Result<Report> {
         warnings: photometry.warnings.iter().map(ToString::to_string).collect(),
         description: algorithm.description(),
     })
+}
+
+/// Writes the directions that `first` hands over, block by block. Nothing is written where it fails.
+fn write_directions(
+    path: &Path,
+    kind: PhotometricType,
+    first: impl FnOnce(&mut dyn FnMut(&[Sampled]) -> bool) -> Result<Effort>,
+) -> Result<Effort> {
+    let mut outcome = Ok(Effort::default());
+    let written = write_atomically(path, |out| {
+        let mut table = Table::new(out, kind)?;
+        let mut rows = Ok(());
+        outcome = first(&mut |block| {
+            rows = table.rows(block);
+            rows.is_ok()
+        });
+        match &outcome {
+            Ok(_) => rows,
+            Err(error) => Err(io::Error::other(error.to_string())),
+        }
+    });
+    let effort = outcome?;
+    written.map(|()| effort)
 }
 
 fn algorithm(args: &SampleArgs) -> Result<Algorithm> {
