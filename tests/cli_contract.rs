@@ -86,8 +86,6 @@ cells = [4, 4]
 fn what_is_not_built_yet_says_so_and_exits_2() {
     let s = Stranger::new();
     for line in [
-        "compare",
-        "compare --full -o x",
         "bsdf x.bsdf",
         "render --error 1",
         "render --time 3",
