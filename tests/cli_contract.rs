@@ -85,12 +85,7 @@ cells = [4, 4]
 #[test]
 fn what_is_not_built_yet_says_so_and_exits_2() {
     let s = Stranger::new();
-    for line in [
-        "bsdf x.bsdf",
-        "render --error 1",
-        "render --time 3",
-        "render --resume",
-    ] {
+    for line in ["bsdf x.bsdf", "render --error 1", "render --time 3", "render --resume"] {
         s.is_told(line, 2, &["not available yet"]);
     }
     assert_eq!(fs::read_dir(s.folder.path()).unwrap().count(), 0);
@@ -334,7 +329,7 @@ fn a_report_has_the_keys_of_the_contract_and_balances() {
             "receivers",
             "stopped_by",
         ],
-        &["photons_planned", "standard_error_absent", "ledger_photons", "exceptions", "warnings"],
+        &["photons_planned", "solver", "standard_error_absent", "ledger_photons", "exceptions", "warnings"],
     );
     assert_keys(&report["scene"], &["path", "sha256"], &["files"]);
     assert_keys(&report["time"], &["trace_s", "total_s", "photons_per_s"], &[]);

@@ -139,6 +139,11 @@ impl Emitters {
         self.flux_lm
     }
 
+    /// Whether one emitter has all the flux, so that none is chosen.
+    pub fn is_single(&self) -> bool {
+        self.choice.is_single()
+    }
+
     /// The emitters in the order of the scene.
     pub fn as_slice(&self) -> &[Emitter] {
         &self.emitters

@@ -84,7 +84,7 @@ impl<'s> Tracer<'s> {
     /// Traces up to photon number `until`.
     ///
     /// # Errors
-    /// A sequence that cannot have this many points or, where rejection skips points, more; a ledger that does not balance (a defect of the program).
+    /// A sequence that cannot have this many points; rejection by next point on a sequence that ends or with several emitters; a ledger that does not balance (a defect of the program).
     pub fn trace(
         &mut self,
         until: u64,
@@ -92,13 +92,7 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
-        if self.algorithm.sampling().skips_points() && self.points.sequence.needs_number() {
-            return Err(Diagnostic::new(
-                Kind::Range,
-                format!("variant {}", self.algorithm.name()),
-                "a sequence that goes on beyond N points, for rejection that retries with the next one",
-            ));
-        }
+        self.check_skipping()?;
         let how = How {
             reuse: self.algorithm.variant.reuses(),
             sampling: self.algorithm.sampling(),
@@ -116,6 +110,28 @@ impl<'s> Tracer<'s> {
         check_balance(&traced)?;
         (self.photons, self.attempts) = (until, attempts);
         Ok(traced)
+    }
+}
+
+impl Tracer<'_> {
+    /// Whether rejection that goes on with the next point can be right here.
+    fn check_skipping(&self) -> Result<()> {
+        if !self.algorithm.sampling().skips_points() {
+            return Ok(());
+        }
+        let fail = |required: &str| {
+            Err(Diagnostic::new(Kind::Range, format!("variant {}", self.algorithm.name()), required))
+        };
+        if self.points.sequence.needs_number() {
+            return fail(
+                "a sequence that goes on beyond N points, for rejection that retries with the next one",
+            );
+        }
+        // The next point chooses the emitter anew: they would come out by flux times chance of acceptance.
+        if !self.scene.emitters.is_single() {
+            return fail("a scene with one emitter, for rejection that retries with the next point");
+        }
+        Ok(())
     }
 }
 

@@ -15,7 +15,7 @@ pub enum Sampling {
 /// Where the proposals of a rejection come from, and what a rejected one is followed by.
 ///
 /// Proposals inside a cell cannot be followed by the next point: that would choose another cell, and cells would come out
-/// by flux times chance of acceptance.
+/// by flux times chance of acceptance. For the same reason the next point needs a scene with one emitter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rejection {
     /// A cell chosen by its flux; proposals inside it against the largest of its corners, from the photon's next
