@@ -12,6 +12,7 @@
 pub mod dielectric;
 pub mod lambertian;
 pub mod mirror;
+pub mod reference;
 pub mod reflectance;
 pub mod throughput;
 
@@ -20,6 +21,7 @@ use glam::DVec3;
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use reference::Reference;
 pub use reflectance::Reflectance;
 pub use throughput::{Fixed, Grey, Rgb, Throughput};
 

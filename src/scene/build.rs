@@ -36,8 +36,12 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
     for surface in &description.surfaces {
         match shape(description, surface, &mut parts.warnings) {
             Ok(shape) => {
-                let bsdf = material(description.materials[surface.material.index].kind);
-                parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf));
+                match material(&description.materials[surface.material.index].kind) {
+                    Ok(bsdf) => {
+                        parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf));
+                    }
+                    Err(e) => errors.push(placed(description, surface.place, e)),
+                }
             }
             Err(e) => errors.push(placed(description, surface.place, e)),
         }
@@ -93,13 +97,16 @@ fn identity(description: &Description) -> Identity {
     }
 }
 
-fn material(kind: MaterialKind) -> Bsdf {
-    match kind {
+fn material(kind: &MaterialKind) -> Result<Bsdf> {
+    Ok(match *kind {
         MaterialKind::Dielectric { ior, ior_outside } => Bsdf::Dielectric(Dielectric { ior_outside, ior }),
         MaterialKind::Mirror { reflectance } => Bsdf::Mirror { reflectance },
         MaterialKind::Lambertian { reflectance } => Bsdf::Lambertian { reflectance },
         MaterialKind::Absorber => Bsdf::Absorber,
-    }
+        MaterialKind::Tabulated(_) => {
+            return Err(Diagnostic::new(Kind::Unavailable, "a table", "another material"));
+        }
+    })
 }
 
 fn shape(d: &Description, surface: &SurfaceDescription, warnings: &mut Vec<Diagnostic>) -> Result<Shape> {

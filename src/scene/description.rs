@@ -97,11 +97,15 @@ impl Description {
         self.files().filter_map(missing).collect()
     }
 
-    /// The files this scene names, in the order emitters, surfaces.
+    /// The files this scene names, in the order emitters, materials, surfaces.
     pub fn files(&self) -> impl Iterator<Item = &Placed<String>> {
         let emitters = self.emitters.iter().filter_map(|e| match &e.shape {
             EmitterShape::Photometric { file, .. } => Some(file),
             EmitterShape::Isotropic | EmitterShape::Collimated { .. } | EmitterShape::Panel { .. } => None,
+        });
+        let materials = self.materials.iter().filter_map(|m| match &m.kind {
+            MaterialKind::Tabulated(tabulated) => Some(&tabulated.file),
+            _ => None,
         });
         let surfaces = self.surfaces.iter().filter_map(|s| match &s.shape {
             ShapeDescription::Mesh { file, .. } => Some(file),
@@ -111,7 +115,7 @@ impl Description {
             },
             _ => None,
         });
-        emitters.chain(surfaces)
+        emitters.chain(materials).chain(surfaces)
     }
 
     fn pointed_at(&self, place: Place, error: Diagnostic) -> Diagnostic {
@@ -203,7 +207,7 @@ pub struct MaterialDescription {
 }
 
 /// What a material does with light.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MaterialKind {
     /// A smooth interface between two clear media.
     Dielectric {
@@ -224,6 +228,47 @@ pub enum MaterialKind {
     },
     /// Absorbs everything.
     Absorber,
+    /// Scatters as a table says.
+    Tabulated(TabulatedDescription),
+}
+
+/// A scattering table on a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedDescription {
+    /// The file, as named.
+    pub file: Placed<String>,
+    /// Which side of the surface the table's front is.
+    pub side: TableSide,
+    /// Turn of the table about the normal of the side where light arrives, in degrees, counter-clockwise seen from the
+    /// tip of that normal, from the surface's reference direction.
+    pub rotation_deg: f64,
+    /// A direction whose part along the surface is the reference direction; `None`: the shape's own.
+    pub reference: Option<DVec3>,
+    /// What happens where the table scatters more than arrives.
+    pub energy: Energy,
+    /// Whether what the table leaves goes on mirrored (straight through, where the table only transmits) instead of being
+    /// absorbed.
+    pub specular_remainder: bool,
+}
+
+/// Which side of a surface the front of a scattering table is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TableSide {
+    /// The surface's front is the table's front, and its back the table's back.
+    Front,
+    /// The sheet lies the other way round.
+    Back,
+    /// What the table says of its front holds on both sides.
+    Both,
+}
+
+/// What happens where a scattering table scatters more light than arrives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Energy {
+    /// The table is refused, with numbers.
+    Refuse,
+    /// The incidences concerned are scaled to an albedo of 1, with a warning.
+    Scale,
 }
 
 /// A `[[surface]]`.
