@@ -52,7 +52,12 @@ fn separates(c: char) -> bool {
 
 impl<'a> Words<'a> {
     pub fn new(text: &'a str) -> Self {
-        Self { rest: text, line: 1, column: 1 }
+        Self::from_place(text, 1, 1)
+    }
+
+    /// A part of a file that begins at this line and column.
+    pub fn from_place(text: &'a str, line: usize, column: usize) -> Self {
+        Self { rest: text, line, column }
     }
 
     /// Moves behind `bytes` bytes, which end at a character.
