@@ -10,12 +10,14 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use glam::DVec3;
+
 use crate::error::Result;
 use crate::image::canvas::{Anchor, Colour, TextStyle};
 use crate::image::drawing::{Drawing, Pen, Shape};
 use crate::image::font;
 use crate::image::scale::linear_ticks;
-use crate::scattering::integral::node_values;
+use crate::scattering::value::value;
 use crate::scattering::{Frame, Lobe, LobeSide, Quantity, ScatterTable};
 use crate::units::LUMINANCE_OF_RGB;
 
@@ -89,7 +91,8 @@ impl BsdfPlot {
             .filter_map(|quantity| table.lobe(quantity, front));
         let slices: Vec<Slice> = lobes.flat_map(slices).collect();
         let side = if front { "front" } else { "back" };
-        footer.insert(0, format!("light from the {side}, plane of incidence; f cos(\u{3b8}) in cd per lumen"));
+        footer
+            .insert(0, format!("light from the {side}, plane of incidence; f cos(\u{3b8}) in cd per lumen"));
         Self { title: title.into(), slices, footer }
     }
 
@@ -219,16 +222,16 @@ fn nearest(angles_deg: &[f64], wanted_deg: &[f64]) -> Vec<usize> {
     chosen
 }
 
-/// (signed angle, candela per lumen) in the plane of incidence, as the table is interpolated; luminance of colours.
+/// (signed angle, candela per lumen) in the plane of incidence; luminance of colours.
 fn in_plane(lobe: &Lobe, phi_i: usize, theta_i: usize) -> Vec<(f64, f64)> {
     let theta_i_deg = lobe.theta_i_deg[theta_i];
-    let weights: &[f64] = if lobe.channels == 3 { &LUMINANCE_OF_RGB } else { &[1.0] };
-    let mut nodes = vec![0.0; lobe.polar_deg.len() * lobe.azimuth_deg.len()];
-    for (channel, weight) in weights.iter().enumerate() {
-        for (sum, g) in nodes.iter_mut().zip(node_values(lobe, channel, phi_i, theta_i)) {
-            *sum += weight * g;
-        }
-    }
+    // At normal incidence the table's azimuths are the limit from larger angles.
+    let theta = theta_i_deg.to_radians().max(f64::EPSILON);
+    let phi = lobe.phi_i_deg[phi_i].to_radians();
+    let along = DVec3::new(libm::cos(phi), libm::sin(phi), 0.0);
+    // At grazing incidence light still arrives.
+    let wi = along * libm::sin(theta) + DVec3::Z * libm::cos(theta).max(f64::MIN_POSITIVE);
+    let normal = if lobe.quantity == Quantity::Reflection { DVec3::Z } else { DVec3::NEG_Z };
     // Where the pole of the grid lies in the plane.
     let pole_deg = match lobe.frame {
         Frame::Surface => 0.0,
@@ -236,39 +239,19 @@ fn in_plane(lobe: &Lobe, phi_i: usize, theta_i: usize) -> Vec<(f64, f64)> {
     };
     let steps = (180.0 / STEP_DEG) as i32;
     let mut angles: Vec<f64> = (0..=steps).map(|i| f64::from(i) * STEP_DEG - 90.0).collect();
-    angles.extend(lobe.polar_deg.iter().flat_map(|p| [pole_deg + p, pole_deg - p]).filter(|a| a.abs() <= 90.0));
+    angles
+        .extend(lobe.polar_deg.iter().flat_map(|p| [pole_deg + p, pole_deg - p]).filter(|a| a.abs() <= 90.0));
     angles.sort_by(f64::total_cmp);
     angles.dedup();
-    let value = |angle: f64| {
-        let off = angle - pole_deg;
-        // Surface: azimuth 0 is forwards. Specular: azimuth 0 is towards the normal, so backwards from the pole.
-        let forwards = off >= 0.0;
-        let azimuth = if forwards == (lobe.frame == Frame::Surface) { 0.0 } else { 180.0 };
-        bilinear(lobe, &nodes, off.abs(), azimuth)
+    let weights: &[f64] = if lobe.channels == 3 { &LUMINANCE_OF_RGB } else { &[1.0] };
+    let intensity = |angle_deg: f64| {
+        let angle = angle_deg.to_radians();
+        let cosine = libm::cos(angle);
+        let wo = normal * cosine - along * libm::sin(angle);
+        let f = weights.iter().enumerate().map(|(channel, weight)| weight * value(lobe, channel, wi, wo));
+        f.sum::<f64>() * cosine
     };
-    angles.into_iter().map(|a| (a, value(a))).collect()
-}
-
-/// The node values of a slice between the nodes, zero beyond the last polar angle; below the first one it holds.
-fn bilinear(lobe: &Lobe, nodes: &[f64], polar_deg: f64, azimuth_deg: f64) -> f64 {
-    let azimuths = lobe.azimuth_deg.len();
-    let first = lobe.azimuth_deg[0];
-    // Lists of one turn begin at 0 or -180: both planes' azimuths are brought into them.
-    let azimuth = first + (azimuth_deg - first).rem_euclid(360.0);
-    let (column, v) = bracket(&lobe.azimuth_deg, azimuth);
-    if polar_deg > lobe.polar_deg[lobe.polar_deg.len() - 1] || polar_deg < lobe.polar_deg[0] {
-        return 0.0;
-    }
-    let (row, u) = bracket(&lobe.polar_deg, polar_deg);
-    let at = |r: usize, c: usize| nodes[r * azimuths + c];
-    let along = |r: usize| at(r, column) * (1.0 - v) + at(r, column + 1) * v;
-    along(row) * (1.0 - u) + along(row + 1) * u
-}
-
-/// The interval of a rising list that holds x, and how far into it; clamped at the ends.
-fn bracket(list: &[f64], x: f64) -> (usize, f64) {
-    let i = list.partition_point(|a| *a <= x).clamp(1, list.len() - 1) - 1;
-    (i, ((x - list[i]) / (list[i + 1] - list[i])).clamp(0.0, 1.0))
+    angles.into_iter().map(|a| (a, intensity(a))).collect()
 }
 
 impl Page {
@@ -304,7 +287,12 @@ impl Page {
             for angle in (0..90).step_by(RAY_STEP_DEG) {
                 for side in [1.0, -1.0] {
                     if side > 0.0 || angle > 0 {
-                        self.draw_ray(shapes, *quantity, side * angle as f64, if angle == 0 { strong } else { fine });
+                        self.draw_ray(
+                            shapes,
+                            *quantity,
+                            side * angle as f64,
+                            if angle == 0 { strong } else { fine },
+                        );
                     }
                 }
             }

@@ -35,14 +35,12 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
     let mut errors = Vec::new();
     for surface in &description.surfaces {
         match shape(description, surface, &mut parts.warnings) {
-            Ok(shape) => {
-                match material(&description.materials[surface.material.index].kind) {
-                    Ok(bsdf) => {
-                        parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf));
-                    }
-                    Err(e) => errors.push(placed(description, surface.place, e)),
+            Ok(shape) => match material(&description.materials[surface.material.index].kind) {
+                Ok(bsdf) => {
+                    parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf));
                 }
-            }
+                Err(e) => errors.push(placed(description, surface.place, e)),
+            },
             Err(e) => errors.push(placed(description, surface.place, e)),
         }
     }
