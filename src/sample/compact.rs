@@ -45,6 +45,7 @@ struct Slice {
     last: u32,
     /// Cells of positive flux: none, one, or more.
     cells: Cells,
+    proposals: (f64, f64),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,7 +112,8 @@ impl CompactGrids {
         let unit = if largest > 0.0 { largest } else { 1.0 };
         self.nodes.extend(values.iter().map(|v| (v / unit) as f32));
         let fluxes = self.fluxes(&self.nodes[start..]);
-        let integral = largest * fluxes.iter().sum::<f64>();
+        let sum: f64 = fluxes.iter().sum();
+        let integral = largest * sum;
         if !integral.is_finite() {
             self.nodes.truncate(start);
             let found = format!("values up to {largest}, whose integral is {integral}");
@@ -124,7 +126,8 @@ impl CompactGrids {
             _ => Cells::Many,
         };
         let last = last.unwrap_or(0);
-        self.slices.push(Slice { largest, integral, last: last as u32, cells });
+        let proposals = self.count_proposals(&self.nodes[start..], sum);
+        self.slices.push(Slice { largest, integral, last: last as u32, cells, proposals });
         self.add_choice(&fluxes, last);
         Ok(self.slices.len() - 1)
     }
@@ -341,18 +344,23 @@ impl CompactGrids {
 
     /// Proposals per accepted direction: (inside a cell chosen by flux, over the range of the grid); 0 for a slice of zeros.
     pub fn proposals(&self, slice: usize) -> (f64, f64) {
-        if self.integral(slice) == 0.0 {
+        self.slices[slice].proposals
+    }
+
+    /// The same from the nodes and their integral, both in units of the largest.
+    fn count_proposals(&self, nodes: &[f32], integral: f64) -> (f64, f64) {
+        if integral == 0.0 {
             return (0.0, 0.0);
         }
-        let (mut inside, mut cap, largest) = (0.0, 0.0, self.slices[slice].largest);
+        let (mut inside, mut all) = (0.0, 0.0);
         for (i, row) in self.rows.iter().enumerate() {
             for (j, column) in self.columns.iter().enumerate() {
-                let corners = self.corners(self.nodes_of(slice), i, j);
-                inside += largest * corners.into_iter().fold(0.0, f64::max) * row.cap() * column.width;
-                cap += row.cap() * column.width;
+                let solid_angle = row.cap() * column.width;
+                inside += self.corners(nodes, i, j).into_iter().fold(0.0, f64::max) * solid_angle;
+                all += solid_angle;
             }
         }
-        (inside / self.integral(slice), cap * largest / self.integral(slice))
+        (inside / integral, all / integral)
     }
 
     /// First azimuth and the extent of all.
