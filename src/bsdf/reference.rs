@@ -2,33 +2,53 @@
 
 use glam::DVec3;
 
-use crate::math::frame::{frame_about, frame_from_axis};
+use crate::error::{Diagnostic, Kind, Result};
+use crate::math::frame::{frame_about, unit};
 
-/// Where azimuth 0 is at every place of a surface, told from the normal there alone.
+/// Where azimuth 0 is at every place of a surface, told from the outward normal there alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reference {
     /// The part of this direction that lies along the surface: brushed straight.
     Along(DVec3),
-    /// Around this axis, as brushed on a lathe: counter-clockwise seen from its tip where the normal points away from the
-    /// axis, the other way on the side that looks to the axis.
+    /// Around this axis, as brushed on a lathe: counter-clockwise seen from its tip where the outward normal points away
+    /// from the axis, the other way where it points to the axis.
     Around(DVec3),
 }
 
+impl Default for Reference {
+    fn default() -> Self {
+        Self::Along(DVec3::X)
+    }
+}
+
 impl Reference {
-    /// The unit reference direction across the unit normal `normal`.
+    /// The same with a unit vector, which [`Self::tangent`] relies on.
     ///
-    /// A surface that looks along the direction or axis has no such part. There the part of the y axis stands in, and if
-    /// the normal is that one, any direction across it.
-    #[inline]
-    pub fn tangent(&self, normal: DVec3) -> DVec3 {
-        let frame = match *self {
-            Self::Along(direction) => frame_from_axis(normal, direction).map(|frame| frame.x_axis),
-            // y is normal x axis.
-            Self::Around(axis) => frame_from_axis(normal, axis).map(|frame| -frame.y_axis),
+    /// # Errors
+    /// A vector without direction.
+    pub fn normalised(self) -> Result<Self> {
+        let unit = |v: DVec3| {
+            unit(v).ok_or_else(|| {
+                Diagnostic::new(Kind::Range, format!("the reference direction {v}"), "a direction")
+            })
         };
-        frame
-            .or_else(|| frame_from_axis(normal, DVec3::Y).map(|frame| frame.x_axis))
-            .unwrap_or_else(|| frame_about(normal).x_axis)
+        Ok(match self {
+            Self::Along(direction) => Self::Along(unit(direction)?),
+            Self::Around(axis) => Self::Around(unit(axis)?),
+        })
+    }
+
+    /// The unit reference direction across the unit normal `outward`. Where the normal is the direction or axis itself, some
+    /// fixed one stands in.
+    #[inline]
+    pub fn tangent(&self, outward: DVec3) -> DVec3 {
+        let along = match *self {
+            Self::Along(direction) => direction - direction.dot(outward) * outward,
+            Self::Around(axis) => axis.cross(outward),
+        };
+        // Parallel as far as f64 can tell: rounding is all that is left.
+        let parallel = along.length_squared() <= (8.0 * f64::EPSILON) * (8.0 * f64::EPSILON);
+        if parallel { frame_about(outward).x_axis } else { along.normalize() }
     }
 }
 
@@ -42,7 +62,7 @@ mod tests {
 
     #[test]
     fn straight_brushing_is_projected() {
-        let reference = Reference::Along(DVec3::new(3.0, 0.0, 4.0));
+        let reference = Reference::Along(DVec3::new(3.0, 0.0, 4.0)).normalised().unwrap();
         assert!(close(reference.tangent(DVec3::Z), DVec3::X));
         assert!(close(reference.tangent(-DVec3::Z), DVec3::X), "the same on both sides");
         assert!(close(reference.tangent(DVec3::X), DVec3::Z));
@@ -51,7 +71,7 @@ mod tests {
 
     #[test]
     fn turned_brushing_goes_around_the_axis() {
-        let reference = Reference::Around(DVec3::Z * 2.0);
+        let reference = Reference::Around(DVec3::Z * 2.0).normalised().unwrap();
         // Seen from the tip of z, counter-clockwise: at x it goes towards y, at y towards -x.
         for side in [1.0, -1.0] {
             let slanted = |x: f64, y: f64| DVec3::new(0.6 * x, 0.6 * y, 0.8) * side;
@@ -69,6 +89,6 @@ mod tests {
                 assert!((tangent.length() - 1.0).abs() < 1e-15 && tangent.dot(normal).abs() < 1e-15);
             }
         }
-        assert!(close(Reference::Along(DVec3::X).tangent(DVec3::X), DVec3::Y));
+        assert!(Reference::Along(DVec3::ZERO).normalised().is_err());
     }
 }

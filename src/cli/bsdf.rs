@@ -44,7 +44,15 @@ fn show(args: &BsdfArgs) -> Result<()> {
 
 /// Writes the polar diagram; the ending of the name says as what.
 fn plot(path: &Path, table: &ScatterTable, summary: &BsdfSummary) -> Result<()> {
-    let plot = BsdfPlot::new(table, &summary.name, footer(summary));
+    // A table without a name of its own is called by its path.
+    let title = if summary.name == summary.file {
+        Path::new(&summary.file)
+            .file_name()
+            .map_or_else(|| summary.file.clone().into(), |n| n.to_string_lossy())
+    } else {
+        summary.name.as_str().into()
+    };
+    let plot = BsdfPlot::new(table, &title, footer(summary));
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     match ending.as_deref() {
         Some("svg") => write_atomically(path, |out| out.write_all(plot.to_svg().as_bytes())),

@@ -218,7 +218,7 @@ impl LobeSummary {
 
     fn incident_text(&self) -> String {
         let last = self.theta_i_deg.last().copied().unwrap_or_default();
-        let polar = format!("{} polar to {}", counted(self.theta_i_deg.len(), "angle"), degrees(last));
+        let polar = format!("{} to {}", counted(self.theta_i_deg.len(), "polar angle"), degrees(last));
         if self.isotropic {
             return format!("{polar}, isotropic");
         }
@@ -238,7 +238,7 @@ impl LobeSummary {
         };
         format!(
             "{} to {} from {pole} x {}, {symmetry}",
-            counted(self.polar_angles, "angle"),
+            counted(self.polar_angles, "polar angle"),
             degrees(self.polar_last_deg),
             counted(self.azimuth_angles, "azimuth"),
         )
@@ -248,34 +248,27 @@ impl LobeSummary {
     fn write_albedos(&self, out: &mut String) -> std::fmt::Result {
         let thetas = self.theta_i_deg.len();
         let declared = self.incidences.iter().any(|i| i.tis_declared.is_some());
-        let heads: &[&str] = match (self.isotropic, self.channels) {
-            (false, _) => &["least", "most"],
-            (true, 3) => &["albedo", "red", "green", "blue"],
-            (true, _) => &["albedo"],
+        let mut heads = match (self.isotropic, self.channels) {
+            (false, _) => vec!["least", "most"],
+            (true, 3) => vec!["albedo", "red", "green", "blue"],
+            (true, _) => vec!["albedo"],
         };
+        heads.extend(declared.then_some("declared"));
+        heads.extend((declared && !self.isotropic).then_some("to"));
         writeln!(out, "\n{} of light {}", self.quantity, from_side(self.side))?;
         write!(out, "{:>10}", "incidence")?;
-        heads.iter().chain(declared.then_some(&"declared")).try_for_each(|head| write!(out, "{head:>12}"))?;
+        heads.iter().try_for_each(|head| write!(out, "{head:>12}"))?;
         writeln!(out)?;
         let every = thetas.div_ceil(MOST_ROWS);
         for t in (0..thetas).filter(|t| t % every == 0 || t + 1 == thetas) {
             let at: Vec<&IncidenceSummary> = self.incidences.iter().skip(t).step_by(thetas).collect();
             write!(out, "{:>10}", degrees(self.theta_i_deg[t]))?;
-            let over =
-                |pick: fn(f64, f64) -> f64| at.iter().map(|i| i.albedo).reduce(pick).unwrap_or_default();
-            let columns = match (self.isotropic, at[0].albedo_rgb) {
-                (false, _) => vec![over(f64::min), over(f64::max)],
-                (true, Some(rgb)) => [vec![at[0].albedo], rgb.to_vec()].concat(),
-                (true, None) => vec![at[0].albedo],
-            };
+            let albedos: Vec<f64> = at.iter().map(|i| i.albedo).collect();
+            let totals: Vec<f64> = at.iter().filter_map(|i| i.tis_declared).collect();
+            let mut columns = if self.isotropic { albedos } else { range(&albedos) };
+            columns.extend(at[0].albedo_rgb.filter(|_| self.isotropic).into_iter().flatten());
+            columns.extend(if self.isotropic { totals } else { range(&totals) });
             columns.iter().try_for_each(|albedo| write!(out, "{albedo:>12.6}"))?;
-            if declared {
-                match at.iter().map(|i| i.tis_declared).collect::<Vec<_>>()[..] {
-                    [Some(tis)] => write!(out, "{tis:>12.6}")?,
-                    // One column has no room for the declared totals of several azimuths; JSON has them all.
-                    _ => write!(out, "{:>12}", "-")?,
-                }
-            }
             writeln!(out)?;
         }
         if every > 1 {
@@ -348,6 +341,12 @@ fn energy(
         }
     }
     most
+}
+
+/// The least and the greatest; nothing of nothing.
+fn range(values: &[f64]) -> Vec<f64> {
+    let over = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick);
+    over(f64::min).into_iter().chain(over(f64::max)).collect()
 }
 
 /// The two nodes around x with their weights; the first or the last alone beyond them.

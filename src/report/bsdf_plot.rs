@@ -92,7 +92,7 @@ impl BsdfPlot {
         let slices: Vec<Slice> = lobes.flat_map(slices).collect();
         let side = if front { "front" } else { "back" };
         footer
-            .insert(0, format!("light from the {side}, plane of incidence; f cos(\u{3b8}) in cd per lumen"));
+            .insert(0, format!("light from the {side}, plane of incidence; f cos(theta) in cd for a lumen"));
         Self { title: title.into(), slices, footer }
     }
 

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
 use crate::bsdf::Reflectance;
+use crate::bsdf::tabulated::{Energy, Sides};
 use crate::error::{Diagnostic, Kind, Result};
 
 /// A place in a scene file, both counted from 1; columns count characters.
@@ -237,38 +238,18 @@ pub enum MaterialKind {
 pub struct TabulatedDescription {
     /// The file, as named.
     pub file: Placed<String>,
-    /// Which side of the surface the table's front is.
-    pub side: TableSide,
-    /// Turn of the table about the normal of the side where light arrives, in degrees, counter-clockwise seen from the
-    /// tip of that normal, from the surface's reference direction.
+    /// Which side of the surface is the table's front.
+    pub sides: Sides,
+    /// Turn of the table against the surface's reference direction, in degrees, counter-clockwise seen from the tip of the
+    /// outward normal.
     pub rotation_deg: f64,
-    /// A direction whose part along the surface is the reference direction; `None`: the shape's own.
+    /// Unit vector whose part along the surface is the reference direction; `None`: the shape's own.
     pub reference: Option<DVec3>,
     /// What happens where the table scatters more than arrives.
     pub energy: Energy,
-    /// Whether what the table leaves goes on mirrored (straight through, where the table only transmits) instead of being
+    /// Whether what the table leaves goes on straight through (mirrored, where the table only reflects) instead of being
     /// absorbed.
     pub specular_remainder: bool,
-}
-
-/// Which side of a surface the front of a scattering table is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TableSide {
-    /// The surface's front is the table's front, and its back the table's back.
-    Front,
-    /// The sheet lies the other way round.
-    Back,
-    /// What the table says of its front holds on both sides.
-    Both,
-}
-
-/// What happens where a scattering table scatters more light than arrives.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Energy {
-    /// The table is refused, with numbers.
-    Refuse,
-    /// The incidences concerned are scaled to an albedo of 1, with a warning.
-    Scale,
 }
 
 /// A `[[surface]]`.

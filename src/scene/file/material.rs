@@ -2,8 +2,9 @@
 
 use super::{ANGLE, direction};
 use crate::bsdf::Reflectance;
+use crate::bsdf::tabulated::{Energy, Sides};
 use crate::error::Kind;
-use crate::scene::description::{Energy, MaterialDescription, MaterialKind, TableSide, TabulatedDescription};
+use crate::scene::description::{MaterialDescription, MaterialKind, TabulatedDescription};
 use crate::scene::toml_table::{Interval, Table};
 
 const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
@@ -26,8 +27,7 @@ const TYPES: [(&str, Type); 5] = [
     ("tabulated", Type::Tabulated),
 ];
 
-const SIDES: [(&str, TableSide); 3] =
-    [("front", TableSide::Front), ("back", TableSide::Back), ("both", TableSide::Both)];
+const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back), ("both", Sides::Both)];
 
 const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
 
@@ -83,17 +83,17 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
 fn read_tabulated(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
     table.call("a tabulated material");
     let file = table.path("file");
-    let side = table.word("side", &SIDES).unwrap_or(TableSide::Front);
+    let sides = table.word("side", &SIDES).unwrap_or_default();
     let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
     let reference = match table.place_of("reference") {
         Some(_) => Some(direction(table, "reference", None)?),
         None => None,
     };
-    let energy = table.word("energy", &ENERGIES).unwrap_or(Energy::Refuse);
+    let energy = table.word("energy", &ENERGIES).unwrap_or_default();
     let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
     Some(MaterialKind::Tabulated(TabulatedDescription {
         file: file?,
-        side,
+        sides,
         rotation_deg,
         reference,
         energy,
