@@ -92,7 +92,9 @@ fn values_at_the_nodes_are_those_of_the_table() {
                             if *theta_i == 0.0 && data.phi_i_deg.len() > 1 && j > 0 {
                                 continue;
                             }
-                            let (theta, phi) = (polar.to_radians(), azimuth.to_radians());
+                            // At either end the direction must not round to where there is no table.
+                            let inwards = if p == 0 { 1e-14 } else { -1e-14 };
+                            let (theta, phi) = (polar.to_radians() * (1.0 + inwards), azimuth.to_radians());
                             let wo = direction(data.frame, data.quantity, wi, theta, phi);
                             let cos = if data.quantity == Reflection { wo.z } else { -wo.z };
                             let found = t.eval_cos(true, wi, wo, data.quantity);
