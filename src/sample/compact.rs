@@ -374,6 +374,9 @@ impl CompactGrids {
         let [first, turn] = self.turn();
         let turns = libm::floor((phi - first) / (2.0 * PI));
         let phi = if (first..=first + turn).contains(&phi) { phi } else { phi - 2.0 * PI * turns };
+        // A direction on the first edge has an angle that may round to below it.
+        let start = self.rows[0].theta;
+        let theta = if theta < start && start - theta <= 4.0 * f64::EPSILON * start { start } else { theta };
         let i = self.rows.partition_point(|r| r.theta <= theta).checked_sub(1)?;
         let j = self.columns.partition_point(|c| c.phi <= phi).checked_sub(1)?;
         let (row, column) = (&self.rows[i], &self.columns[j]);

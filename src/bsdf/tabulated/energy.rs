@@ -25,8 +25,10 @@ struct Excess {
 /// # Errors
 /// [`Energy::Refuse`] and an albedo above 1.
 pub(super) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> Result<Vec<Diagnostic>> {
-    let excesses: Vec<Excess> = faces.iter().flat_map(|face| excesses(layers, face)).collect();
-    let Some(worst) = excesses.iter().copied().max_by(|a, b| a.albedo.total_cmp(&b.albedo)) else {
+    // Faces of the same lobes are one.
+    let distinct = if faces[0].layers == faces[1].layers { &faces[..1] } else { &faces[..] };
+    let excesses: Vec<Excess> = distinct.iter().flat_map(|face| excesses(layers, face)).collect();
+    let Some(worst) = excesses.iter().max_by(|a, b| a.albedo.total_cmp(&b.albedo)) else {
         return Ok(Vec::new());
     };
     let mut warnings = Vec::new();
@@ -45,9 +47,9 @@ pub(super) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> 
         let required = "albedos of at most 1; those above are scaled to 1";
         warnings.push(Diagnostic::new(Kind::Range, found, required));
     }
-    scale_slices(layers, faces);
+    scale_slices(layers, distinct);
     // Two lobes with angles of their own may still exceed 1 between the angles of one of them.
-    for face in faces {
+    for face in distinct {
         let most = excesses_most(layers, face);
         if most > ONE {
             for k in face.layers.into_iter().flatten() {
@@ -89,7 +91,7 @@ fn excesses_most(layers: &[Layer], face: &Face) -> f64 {
 }
 
 /// Scales every slice by what its own incidence exceeds 1, all channels alike so that the colour stays.
-fn scale_slices(layers: &mut [Layer], faces: &[Face; 2]) {
+fn scale_slices(layers: &mut [Layer], faces: &[Face]) {
     let mut factors: Vec<Vec<f64>> = layers.iter().map(|l| vec![1.0; l.incidences()]).collect();
     for face in faces {
         for k in face.layers.into_iter().flatten() {
