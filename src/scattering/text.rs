@@ -151,7 +151,7 @@ impl Lists {
             }
         }
         let azimuth = match symmetry {
-            Symmetry::Rotational if self.azimuth.is_empty() => rotational(),
+            Symmetry::Rotational if self.azimuth.is_empty() => rotational(frame),
             Symmetry::Rotational => {
                 return Err(refuse("azimuth with rotational symmetry", "no list of azimuths"));
             }

@@ -1,5 +1,7 @@
 //! Azimuth lists of files, unfolded to one full turn with both ends.
 
+use super::Frame;
+
 /// A full turn and, for each of its azimuths, the file's azimuth whose values it takes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Turn {
@@ -7,9 +9,15 @@ pub(super) struct Turn {
     pub source: Vec<usize>,
 }
 
-/// A table that does not depend on azimuth: 0, 180, 360.
-pub(super) fn rotational() -> Turn {
-    Turn { azimuth_deg: vec![0.0, 180.0, 360.0], source: vec![0; 3] }
+/// A table that does not depend on azimuth. About the specular direction the cosine of the horizon still does, so there the
+/// turn has a node every 10 degrees.
+pub(super) fn rotational(frame: Frame) -> Turn {
+    let sectors = match frame {
+        Frame::Surface => 2,
+        Frame::Specular => 36,
+    };
+    let azimuth_deg = (0..=sectors).map(|i| 360.0 * f64::from(i) / f64::from(sectors)).collect();
+    Turn { azimuth_deg, source: vec![0; sectors as usize + 1] }
 }
 
 /// A table of one half, rising from 0 to 180, mirrored into the other; `None` where it does not span the half.

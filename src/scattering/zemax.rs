@@ -148,7 +148,7 @@ impl Header {
         let radials = radials.take().ok_or_else(|| missing(LISTS[3]))?;
         let refuse = |what: &str, required: &str| at.place(Diagnostic::new(Kind::Range, what, required));
         let turn = match (azimuths.len(), plane) {
-            (1, _) => Some(rotational()),
+            (1, _) => Some(rotational(Frame::Specular)),
             (_, true) => mirrored(&azimuths),
             (_, false) => closed(&azimuths),
         };
