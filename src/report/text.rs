@@ -74,6 +74,10 @@ fn write_all(
             grouped(exceptions.skipped_crossings)
         )?;
     }
+    if exceptions.below_horizon > 0 {
+        let photons = grouped(exceptions.below_horizon);
+        writeln!(out, "absorbed   {photons} photons that tables sent below the horizon of their surface")?;
+    }
     Ok(())
 }
 
