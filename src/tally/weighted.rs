@@ -145,7 +145,7 @@ mod tests {
         ] {
             let tally = bits(photons, arrivals).unwrap();
             assert_eq!(tally.fraction_bits(), expected, "{photons} x {arrivals}");
-            let most = u128::from(photons) * u128::from(arrivals) << tally.fraction_bits();
+            let most = (u128::from(photons) * u128::from(arrivals)) << tally.fraction_bits();
             assert!(most <= u128::from(u64::MAX));
         }
         assert!(bits(1 << 32, 1).is_err());
