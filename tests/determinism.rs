@@ -93,7 +93,6 @@ fn reordered(text: &str, order: impl Fn(&mut Vec<String>)) -> String {
     let text = others.concat() + &surfaces.concat();
     text.replace("../ies/", &format!("{}/ies/", project().display()))
         .replace("\"prism.obj\"", &format!("\"{}/scenes/prism.obj\"", project().display()))
-        .replace("\"room/", &format!("\"{}/scenes/room/", project().display()))
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn top_level() {
         &format!("{LAMP}{good}[[«recever]]\nsurface = \"plate\"\n"),
         Kind::Unknown,
         "the unknown key `recever` in a scene",
-        "emitter, material, surface, receiver, camera, compare or run",
+        "emitter, material, surface, receiver, camera or run",
     );
     assert_eq!(error.advice(), Some("did you mean `receiver`?"));
     expect(
