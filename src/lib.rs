@@ -3,7 +3,7 @@
 //!
 //! The pipeline, in the order of the modules; each uses only those before it:
 //!
-//! 1. [`photometry`] reads a luminaire's file; [`scene::file`] reads a scene, and [`scene::build`] makes a [`scene::Scene`] of
+//! 1. [`photometry`] reads a luminaire's file, [`scattering`] holds a surface's table; [`scene::file`] reads a scene, and [`scene::build`] makes a [`scene::Scene`] of
 //!    it: shapes ([`geometry`]), what they are made of ([`bsdf`]), [`emitter`]s, receivers. Everything is checked here, once.
 //! 2. [`run::Plan`] fixes how many photons are traced, in how many replicates, on which [`sequence`].
 //! 3. [`run::trace`]: point i of the sequence gives photon i its coordinates ([`sample`]); they choose its emitter, its
@@ -51,6 +51,7 @@ pub mod math;
 pub mod sequence;
 pub mod sample;
 pub mod photometry;
+pub mod scattering;
 pub mod bsdf;
 pub mod emitter;
 pub mod geometry;
