@@ -63,6 +63,7 @@ impl Sink for Watch<'_> {
             Bsdf::Mirror { .. } => &mut seen.mirror,
             Bsdf::Lambertian { reflectance } if reflectance.luminous() == 1.0 => &mut seen.white,
             Bsdf::Lambertian { .. } => &mut seen.lambertian,
+            Bsdf::Tabulated(_) => unreachable!("no table in these scenes"),
             Bsdf::Absorber => &mut seen.absorber,
         };
         *count += 1;

@@ -13,6 +13,7 @@ pub mod dielectric;
 pub mod lambertian;
 pub mod mirror;
 pub mod reflectance;
+pub mod tabulated;
 pub mod throughput;
 
 use glam::DVec3;
@@ -21,6 +22,7 @@ use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
 pub use reflectance::Reflectance;
+pub use tabulated::Tabulated;
 pub use throughput::{Fixed, Grey, Rgb, Throughput};
 
 /// A photon at a surface.
@@ -41,6 +43,8 @@ pub struct Incidence {
 pub enum Outcome {
     /// It ends here.
     Absorbed,
+    /// It ends here because a table sent it below the horizon, where there is nothing but the surface (METHOD 4).
+    BelowHorizon,
     /// It goes on.
     Leaves {
         /// Where to; unit.
@@ -54,7 +58,7 @@ pub enum Outcome {
 }
 
 /// Everything a surface can be made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Bsdf {
     /// A smooth interface between two transparent media.
     Dielectric(Dielectric),
@@ -68,6 +72,8 @@ pub enum Bsdf {
         /// Part of the flux that is reflected.
         reflectance: Reflectance,
     },
+    /// Scatters as a table says.
+    Tabulated(Box<Tabulated>),
     /// Ends every photon.
     Absorber,
 }
@@ -85,6 +91,7 @@ impl Bsdf {
             Self::Dielectric(dielectric) => dielectric.interact(at, chooser),
             Self::Mirror { reflectance } => mirror::interact(reflectance, at, chooser, carried),
             Self::Lambertian { reflectance } => lambertian::interact(reflectance, at, chooser, carried),
+            Self::Tabulated(table) => table.interact(at, chooser, carried),
             Self::Absorber => Outcome::Absorbed,
         }
     }
@@ -93,11 +100,12 @@ impl Bsdf {
     pub fn is_coloured(&self) -> bool {
         match self {
             Self::Mirror { reflectance } | Self::Lambertian { reflectance } => reflectance.is_coloured(),
+            Self::Tabulated(table) => table.is_coloured(),
             Self::Dielectric(_) | Self::Absorber => false,
         }
     }
 
-    /// Whether photons pass through.
+    /// Whether photons pass into another medium. (What a table lets through is in the same medium: a thin sheet.)
     pub fn is_transparent(&self) -> bool {
         matches!(self, Self::Dielectric(_))
     }

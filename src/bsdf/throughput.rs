@@ -5,11 +5,40 @@
 
 use super::reflectance::{Reflectance, luminance};
 use crate::sample::coordinates::Chooser;
+use crate::units::LUMINANCE_OF_RGB;
 
 /// What a photon carries, and what a reflection does to it.
 pub trait Throughput: Copy + Send + Sync {
     /// The photon meets a surface that reflects these parts: whether it goes on.
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool;
+    /// The photon meets a table of this albedo by channel: whether it is scattered. `rest_goes_on`: what the table leaves is
+    /// not absorbed.
+    fn scatter<C: Chooser>(&mut self, albedo: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate;
+    /// It was scattered where the channels have these values (in any one unit), in a direction whose density is their mean
+    /// weighted by the shares that [`Self::scatter`] gave; `part` is the part of white light's luminous flux that was scattered, 1 where the
+    /// rest went on.
+    fn scattered(&mut self, values: [f64; 3], part: f64);
+}
+
+/// What a table does with a photon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// It is scattered, in a direction chosen by the channels in these shares (any positive sum).
+    Scattered([f64; 3]),
+    /// It goes on as if the table were not there.
+    GoesOn,
+    /// It ends.
+    Ends,
+}
+
+/// The event itself: scattered with this probability, else what becomes of the rest.
+#[inline]
+fn fate<C: Chooser>(probability: f64, shares: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate {
+    match (chooser.happens(probability), rest_goes_on) {
+        (true, _) => Fate::Scattered(shares),
+        (false, true) => Fate::GoesOn,
+        (false, false) => Fate::Ends,
+    }
 }
 
 /// Nothing: the chance of going on is the reflectance. All that a scene without colour needs.
@@ -21,6 +50,14 @@ impl Throughput for Grey {
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
         chooser.happens(reflectance.luminous())
     }
+
+    #[inline(always)]
+    fn scatter<C: Chooser>(&mut self, albedo: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate {
+        fate(luminance(albedo), LUMINANCE_OF_RGB, rest_goes_on, chooser)
+    }
+
+    #[inline(always)]
+    fn scattered(&mut self, _: [f64; 3], _: f64) {}
 }
 
 /// A weight per channel whose luminance stays 1 (METHOD 1): the photon goes on with the probability
@@ -51,6 +88,27 @@ impl Throughput for Rgb {
         }
         self.weight = reflected.map(|w| w / q);
         true
+    }
+
+    #[inline]
+    fn scatter<C: Chooser>(&mut self, albedo: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate {
+        let q = luminance(product(self.weight, albedo)) / luminance(self.weight);
+        let fate = fate(q, product(self.weight, LUMINANCE_OF_RGB), rest_goes_on, chooser);
+        if fate == Fate::GoesOn {
+            self.scattered(albedo.map(|a| 1.0 - a), 1.0);
+        }
+        fate
+    }
+
+    #[inline]
+    fn scattered(&mut self, values: [f64; 3], _: f64) {
+        // The density of the direction is Y(w values), whatever the event's probability: divided by it, Y stays 1.
+        let seen = product(self.weight, values);
+        let y = luminance(seen);
+        // Zero only on an edge where the table vanishes, which is reached at u = 0 and nowhere else.
+        if y > 0.0 {
+            self.weight = seen.map(|w| w / y);
+        }
     }
 }
 
@@ -84,6 +142,31 @@ impl Throughput for Fixed {
         self.left -= 1;
         self.weight = product(self.weight, reflectance.by_channel());
         true
+    }
+
+    #[inline]
+    fn scatter<C: Chooser>(&mut self, albedo: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate {
+        let part = luminance(albedo);
+        if self.left == 0 || (part == 0.0 && !rest_goes_on) {
+            return Fate::Ends;
+        }
+        self.left -= 1;
+        if !rest_goes_on {
+            return Fate::Scattered(LUMINANCE_OF_RGB);
+        }
+        let fate = fate(part, LUMINANCE_OF_RGB, true, chooser);
+        if fate == Fate::GoesOn {
+            self.scattered(albedo.map(|a| 1.0 - a), 1.0);
+        }
+        fate
+    }
+
+    #[inline]
+    fn scattered(&mut self, values: [f64; 3], part: f64) {
+        let y = luminance(values);
+        if y > 0.0 {
+            self.weight = product(self.weight, values).map(|w| w * part / y);
+        }
     }
 }
 

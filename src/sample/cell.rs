@@ -88,15 +88,16 @@ impl Column {
 impl Cell {
     /// A cell, or `None` where its flux is zero (or too small to be told from zero).
     pub fn new(row: &Row, row_index: u32, column_index: u32, corners: [f64; 4]) -> Option<Self> {
+        let cell = Self::of_positive_flux(row, row_index, column_index, corners);
+        (cell.inverse_mass > 0.0 && cell.inverse_mass.is_finite()).then_some(cell)
+    }
+
+    /// A cell that is known to have flux.
+    #[inline]
+    pub(super) fn of_positive_flux(row: &Row, row_index: u32, column_index: u32, corners: [f64; 4]) -> Self {
         let [a1, a2, b1, b2] = corners;
         let (mass, _) = Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(row.width);
-        let inverse_mass = 1.0 / mass;
-        (mass > 0.0 && inverse_mass.is_finite()).then_some(Self {
-            corners,
-            inverse_mass,
-            row: row_index,
-            column: column_index,
-        })
+        Self { corners, inverse_mass: 1.0 / mass, row: row_index, column: column_index }
     }
 
     /// Integral of the bilinear value over the cell in solid angle: dp/2 F(dt).

@@ -63,12 +63,20 @@ impl Reusable {
     }
 }
 
+/// The inverse of [`Reusable::happens`]: the fraction that answers so and leaves this remainder, to the resolution of the
+/// event's width.
+pub fn invert_event(probability: f64, happened: bool, remainder: u64) -> u64 {
+    let threshold = ((probability * TWO_TO_64) as u64).max(1);
+    let times = |width: u64| ((u128::from(remainder) * u128::from(width)) >> 64) as u64;
+    if happened { times(threshold) } else { threshold + times(threshold.wrapping_neg()) }
+}
+
 /// The number of 64-bit fractions.
-pub(super) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
+pub(crate) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 /// d / width as a 64-bit fraction, d < width.
 #[inline]
-fn divide(d: u64, width: u64) -> u64 {
+pub(super) fn divide(d: u64, width: u64) -> u64 {
     ((u128::from(d) << 64) / u128::from(width)) as u64
 }
 

@@ -4,8 +4,9 @@
 //! is drawn; an event with one possible outcome draws none. With renormalisation all discrete events of a photon
 //! share one coordinate until fewer than 24 of its 64 bits are left; without, each draws its own.
 
-use super::choose::Reusable;
+use super::choose::{Reusable, TWO_TO_64};
 use super::discrete::Discrete;
+use super::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 
 /// What a coordinate was drawn for.
@@ -60,6 +61,38 @@ pub trait Chooser {
     fn happens(&mut self, probability: f64) -> bool;
     /// A continuous coordinate in [0, 1).
     fn uniform(&mut self, purpose: Purpose) -> f64;
+
+    /// A coordinate that serves discrete choices first ([`Self::choose_by`]) and as a continuous one last ([`Self::rest`]).
+    #[inline]
+    fn reusable(&mut self, purpose: Purpose) -> Reusable {
+        Reusable::fresh((self.uniform(purpose) * TWO_TO_64) as u64)
+    }
+
+    /// A choice among more than one outcome on `u`; a spent coordinate is replaced first.
+    #[inline]
+    fn choose_by<R>(
+        &mut self,
+        u: &mut Reusable,
+        purpose: Purpose,
+        choice: impl FnOnce(&mut Reusable) -> R,
+    ) -> R {
+        if u.is_spent() {
+            *u = self.reusable(purpose);
+        }
+        choice(u)
+    }
+
+    /// What is left of `u` as a continuous coordinate; a fresh one where too little is.
+    #[inline]
+    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
+        if u.is_spent() { self.uniform(purpose) } else { to_unit_f64(u.bits()) }
+    }
+
+    /// How tables of scattering are sampled.
+    #[inline]
+    fn sampling(&self) -> Sampling {
+        Sampling::default()
+    }
 }
 
 /// The coordinates of one photon.
@@ -68,6 +101,7 @@ pub struct Coordinates<'p, P> {
     points: &'p P,
     index: u64,
     reuse: bool,
+    sampling: Sampling,
     event: Option<Reusable>,
     drawn: u32,
     drawn_for: [u32; Purpose::ALL.len()],
@@ -77,7 +111,14 @@ impl<'p, P: Points> Coordinates<'p, P> {
     /// The coordinates of photon `index`; `reuse` turns renormalisation on.
     #[inline]
     pub fn new(points: &'p P, index: u64, reuse: bool) -> Self {
-        Self { points, index, reuse, event: None, drawn: 0, drawn_for: [0; Purpose::ALL.len()] }
+        Self::sampling_by(points, index, reuse, Sampling::default())
+    }
+
+    /// The same for a photon that samples tables of scattering in a given way.
+    #[inline]
+    pub fn sampling_by(points: &'p P, index: u64, reuse: bool, sampling: Sampling) -> Self {
+        let drawn_for = [0; Purpose::ALL.len()];
+        Self { points, index, reuse, sampling, event: None, drawn: 0, drawn_for }
     }
 
     /// Coordinates consumed so far.
@@ -151,6 +192,38 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
     #[inline]
     fn uniform(&mut self, purpose: Purpose) -> f64 {
         to_unit_f64(self.draw(purpose))
+    }
+
+    #[inline]
+    fn reusable(&mut self, purpose: Purpose) -> Reusable {
+        self.draw_reusable(purpose)
+    }
+
+    #[inline]
+    fn choose_by<R>(
+        &mut self,
+        u: &mut Reusable,
+        purpose: Purpose,
+        choice: impl FnOnce(&mut Reusable) -> R,
+    ) -> R {
+        if u.is_spent() {
+            *u = self.draw_reusable(purpose);
+        }
+        let chosen = choice(u);
+        if !self.reuse {
+            u.spend();
+        }
+        chosen
+    }
+
+    #[inline]
+    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
+        self.remainder(u, purpose)
+    }
+
+    #[inline]
+    fn sampling(&self) -> Sampling {
+        self.sampling
     }
 }
 

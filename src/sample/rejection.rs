@@ -26,13 +26,13 @@ struct Proposal {
 }
 
 /// A polar angle reached from another one by the difference of cosines h.
-struct Reached {
-    s: f64,
-    sin: f64,
-    cos: f64,
+pub(super) struct Reached {
+    pub(super) s: f64,
+    pub(super) sin: f64,
+    pub(super) cos: f64,
 }
 
-fn reach(sin1: f64, cos1: f64, h: f64) -> Reached {
+pub(super) fn reach(sin1: f64, cos1: f64, h: f64) -> Reached {
     let sin = (sin1 * sin1 + h * (2.0 * cos1 - h)).max(0.0).sqrt();
     let sum = sin1 + sin;
     // Both sines vanish at a pole reached from the same pole (h = 0) and from the other one (h = 2).
@@ -48,7 +48,7 @@ fn reach(sin1: f64, cos1: f64, h: f64) -> Reached {
 
 impl Row {
     /// cos(theta1) - cos(theta2).
-    fn cap(&self) -> f64 {
+    pub(super) fn cap(&self) -> f64 {
         let t = InCell::at(self.width);
         self.sin() * t.sin + self.cos() * t.versine
     }

@@ -4,9 +4,10 @@
 //! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
 //! integrals.
 
-use crate::bsdf::{Bsdf, Grey, Rgb};
+use crate::bsdf::{Bsdf, Grey, Incidence, Rgb};
 use crate::emitter::Emitter;
 use crate::run::Algorithm;
+use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::{Rejection, Sampling};
 use crate::scene::Scene;
@@ -35,6 +36,12 @@ pub struct Events {
     pub shared: f64,
     /// Continuous coordinates of scattered directions.
     pub continuous: f64,
+    /// Of those, the ones of tables, two each.
+    pub tables: f64,
+    /// Choices of a slice and of a cell of a table, which share the first of those two with renormalisation.
+    pub table_choices: f64,
+    /// Proposals that tables take by rejection: inside cells, against the largest value.
+    pub table_proposals: [f64; 2],
 }
 
 impl Events {
@@ -47,9 +54,26 @@ impl Events {
     pub fn account(&self, scene: &Scene, algorithm: Algorithm) -> Account {
         let events = if algorithm.variant.reuses() { self.shared } else { self.decisions };
         Account {
-            by_event: emission(scene, algorithm) + events + self.continuous,
+            by_event: emission(scene, algorithm) + events + self.scattering(algorithm),
             equation_4: 3.0 + self.specular + 3.0 * self.scattered + self.end,
             equation_6: 2.0 + 2.0 * self.scattered + self.end,
+        }
+    }
+}
+
+impl Events {
+    /// Coordinates of scattered directions.
+    fn scattering(&self, algorithm: Algorithm) -> f64 {
+        let others = self.continuous - self.tables;
+        let choices = if algorithm.variant.reuses() { 0.0 } else { self.table_choices };
+        let [cells, whole] = self.table_proposals;
+        match algorithm.sampling() {
+            Sampling::Inverse(_) => others + self.tables + choices,
+            Sampling::Rejection(Rejection::Cell) => others + 3.0 * cells + choices,
+            // No cell is chosen: one choice a scattering less.
+            Sampling::Rejection(Rejection::Table | Rejection::NextPoint) => {
+                others + 3.0 * whole + (choices - 0.5 * self.tables).max(0.0)
+            }
         }
     }
 }
@@ -105,7 +129,7 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
                 // The last arrival was no scattering.
                 events.end = 2.0;
                 match scene.bsdf(surface) {
-                    Bsdf::Lambertian { .. } => events.scattered -= 1.0,
+                    Bsdf::Lambertian { .. } | Bsdf::Tabulated(_) => events.scattered -= 1.0,
                     Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => {}
                 }
             }
@@ -117,6 +141,11 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
         sum.decisions += chooser.decisions;
         sum.shared += chooser.shared;
         sum.continuous += chooser.continuous;
+        sum.tables += chooser.tables;
+        sum.table_choices += chooser.table_choices;
+        for (total, proposals) in sum.table_proposals.iter_mut().zip(events.table_proposals) {
+            *total += proposals;
+        }
     }
     let n = PHOTONS as f64;
     Events {
@@ -126,6 +155,9 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
         decisions: sum.decisions / n,
         shared: sum.shared / n,
         continuous: sum.continuous / n,
+        tables: sum.tables / n,
+        table_choices: sum.table_choices / n,
+        table_proposals: sum.table_proposals.map(|p| p / n),
     }
 }
 
@@ -140,6 +172,19 @@ impl<T> Sink<T> for Arrivals<'_> {
         match self.scene.bsdf(arrival.hit.surface) {
             Bsdf::Dielectric(_) | Bsdf::Mirror { .. } => self.events.specular += 1.0,
             Bsdf::Lambertian { .. } => self.events.scattered += 1.0,
+            Bsdf::Tabulated(table) => {
+                self.events.scattered += 1.0;
+                let sign = if arrival.hit.front { 1.0 } else { -1.0 };
+                let at = Incidence {
+                    direction: arrival.direction,
+                    facet: arrival.hit.normal * sign,
+                    smooth: arrival.hit.shading_normal * sign,
+                    front: arrival.hit.front,
+                };
+                let (cells, whole) = table.proposals(&at);
+                self.events.table_proposals[0] += cells;
+                self.events.table_proposals[1] += whole;
+            }
             Bsdf::Absorber => {}
         }
     }
@@ -153,11 +198,14 @@ struct Watched<'p, P> {
     /// Probability of what was decided on the coordinate in use; `None` before the first.
     span: Option<f64>,
     continuous: f64,
+    tables: f64,
+    table_choices: f64,
 }
 
 impl<'p, P: Points> Watched<'p, P> {
     fn new(inner: Coordinates<'p, P>) -> Self {
-        Self { inner, decisions: 0.0, shared: 0.0, span: None, continuous: 0.0 }
+        let (tables, table_choices) = (0.0, 0.0);
+        Self { inner, decisions: 0.0, shared: 0.0, span: None, continuous: 0.0, tables, table_choices }
     }
 }
 
@@ -179,5 +227,26 @@ impl<P: Points> Chooser for Watched<'_, P> {
     fn uniform(&mut self, purpose: Purpose) -> f64 {
         self.continuous += 1.0;
         self.inner.uniform(purpose)
+    }
+
+    fn reusable(&mut self, purpose: Purpose) -> Reusable {
+        // The first coordinate of a table; the second one is asked for as any other.
+        self.continuous += 1.0;
+        self.tables += 2.0;
+        self.inner.reusable(purpose)
+    }
+
+    fn choose_by<R>(
+        &mut self,
+        u: &mut Reusable,
+        purpose: Purpose,
+        choice: impl FnOnce(&mut Reusable) -> R,
+    ) -> R {
+        self.table_choices += 1.0;
+        self.inner.choose_by(u, purpose, choice)
+    }
+
+    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
+        self.inner.rest(u, purpose)
     }
 }

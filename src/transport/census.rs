@@ -12,6 +12,8 @@ pub struct Exceptions {
     pub skipped_crossings: u64,
     /// Directions mirrored back to their side of the facet, and arrivals behind the smooth normal (METHOD 1).
     pub corrected_directions: u64,
+    /// Photons that a scattering table sent below the horizon, absorbed there (METHOD 4).
+    pub below_horizon: u64,
 }
 
 /// Counts over photons; all integers, so merging is exact in any order.
@@ -79,6 +81,7 @@ impl Census {
         }
         self.exceptions.skipped_crossings += other.exceptions.skipped_crossings;
         self.exceptions.corrected_directions += other.exceptions.corrected_directions;
+        self.exceptions.below_horizon += other.exceptions.below_horizon;
     }
 }
 

@@ -143,7 +143,7 @@ fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
             traced.complete = false;
             return;
         }
-        let mut coordinates = Coordinates::new(points, index, how.reuse);
+        let mut coordinates = Coordinates::sampling_by(points, index, how.reuse, how.sampling);
         let Some((emitter, emission)) = scene.emitters.emit_by(how.sampling, &mut coordinates) else {
             traced.census.count_rejected(coordinates.drawn_for());
             continue;

@@ -72,6 +72,10 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
         };
         match scene.bsdf(hit.surface).interact(&at, chooser, &mut carried) {
             Outcome::Absorbed => return End::Absorbed(hit.surface),
+            Outcome::BelowHorizon => {
+                exceptions.below_horizon += 1;
+                return End::Absorbed(hit.surface);
+            }
             Outcome::Leaves { direction: onward, through, corrected } => {
                 exceptions.corrected_directions += u64::from(corrected);
                 let side = if hit.front == through { Side::Back } else { Side::Front };

@@ -1,0 +1,275 @@
+//! Which slice of which lobe scatters a photon, and where to: the discrete choices on the first coordinate and what follows
+//! from them.
+
+use glam::{DMat3, DVec3};
+
+use super::arrival::Arrival;
+use super::layer::{Layer, Mix};
+use crate::math::solve::Solver;
+use crate::sample::choose::{Reusable, invert_event};
+use crate::sample::compact::CompactGrids;
+use crate::sample::coordinates::{Chooser, Purpose};
+use crate::sample::grid::GridPoint;
+use crate::sample::method::{Rejection, Sampling};
+use crate::scattering::Quantity;
+use crate::sequence::to_unit_f64;
+
+/// The lobes of a face for one incidence: the one that reflects, the one that transmits.
+pub(super) struct Lobes<'a> {
+    pub arrival: &'a Arrival,
+    pub lobes: [Option<(&'a Layer, Mix)>; 2],
+}
+
+/// What can scatter a photon: a slice, for one channel where there is colour.
+#[derive(Debug, Clone, Copy)]
+struct Branch {
+    lobe: usize,
+    slice: usize,
+    weight: f64,
+}
+
+/// A photon on its way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Left {
+    pub wo: DVec3,
+    pub quantity: Quantity,
+    pub below_horizon: bool,
+    /// g by channel there, of a lobe in colour.
+    pub values: [f64; 3],
+}
+
+impl<'a> Lobes<'a> {
+    /// Parts that are scattered, by channel.
+    #[inline]
+    pub fn albedo(&self, coloured: bool) -> [f64; 3] {
+        let of = |channel| -> f64 {
+            self.lobes.iter().flatten().map(|(layer, mix)| layer.albedo(mix, channel)).sum()
+        };
+        if coloured { [of(0), of(1), of(2)] } else { [of(0); 3] }
+    }
+
+    /// The same of one lobe.
+    pub fn albedo_of(&self, quantity: Quantity) -> [f64; 3] {
+        let lobe = self.lobes[quantity as usize].as_ref();
+        lobe.map_or([0.0; 3], |(layer, mix)| [0, 1, 2].map(|channel| layer.albedo(mix, channel)))
+    }
+
+    /// g of a lobe by channel.
+    pub fn eval_cos(&self, quantity: Quantity, wo: DVec3) -> [f64; 3] {
+        let Some((layer, mix)) = &self.lobes[quantity as usize] else { return [0.0; 3] };
+        let (theta, phi) = angles(&self.axes(layer), wo);
+        let Some(at) = layer.grids.locate(theta, phi) else { return [0.0; 3] };
+        [0, 1, 2].map(|channel| layer.value_at(mix, channel, &at))
+    }
+
+    #[inline]
+    fn axes(&self, layer: &Layer) -> DMat3 {
+        self.arrival.axes(layer.frame, layer.quantity)
+    }
+
+    /// Every branch of positive weight, in a fixed order. `shares` are those of the channels; `None` where all are grey.
+    #[inline]
+    fn branches(&self, shares: Option<[f64; 3]>) -> impl Iterator<Item = Branch> + '_ {
+        let channels = if shares.is_some() { 3 } else { 1 };
+        let shares = shares.unwrap_or([1.0; 3]);
+        (0..2).flat_map(move |lobe| {
+            let parts = self.lobes[lobe].iter().flat_map(move |(layer, mix)| {
+                // A grey lobe beside a coloured one is the same for all channels: one branch with all shares.
+                let grey = layer.channels == 1 && channels == 3;
+                let sum = shares[0] + shares[1] + shares[2];
+                (0..if grey { 1 } else { channels }).flat_map(move |channel| {
+                    let share = if grey { sum } else { shares[channel] };
+                    mix.parts().map(move |(incidence, part)| {
+                        let slice = layer.slice(channel, incidence);
+                        Branch { lobe, slice, weight: share * part * layer.grids.integral(slice) }
+                    })
+                })
+            });
+            parts.filter(|branch| branch.weight > 0.0)
+        })
+    }
+
+    /// A direction of light that is scattered; `None` where nothing is.
+    #[inline]
+    pub fn sample<C: Chooser>(&self, shares: Option<[f64; 3]>, chooser: &mut C) -> Option<Left> {
+        let mut u = chooser.reusable(Purpose::Scatter);
+        let branch = self.choose(shares, &mut u, chooser)?;
+        let (layer, mix) = self.lobes[branch.lobe].as_ref()?;
+        let point = match chooser.sampling() {
+            Sampling::Inverse(solver) => invert(&layer.grids, branch.slice, u, solver, chooser),
+            Sampling::Rejection(rejection) => reject(&layer.grids, branch.slice, u, rejection, chooser),
+        };
+        let wo = self.axes(layer) * point.direction;
+        let values = if shares.is_some() {
+            let at = layer.grids.locate(point.theta, point.phi);
+            at.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| layer.value_at(mix, channel, &at)))
+        } else {
+            [1.0; 3]
+        };
+        let below_horizon = wo.dot(self.arrival.outgoing_normal(layer.quantity)) <= 0.0;
+        Some(Left { wo, quantity: layer.quantity, below_horizon, values })
+    }
+
+    /// One branch by weight, as one event on `u`; a single one costs nothing.
+    #[inline]
+    fn choose<C: Chooser>(
+        &self,
+        shares: Option<[f64; 3]>,
+        u: &mut Reusable,
+        chooser: &mut C,
+    ) -> Option<Branch> {
+        let (mut count, mut total) = (0, 0.0);
+        let mut only = None;
+        for branch in self.branches(shares) {
+            (count, total) = (count + 1, total + branch.weight);
+            only = Some(branch);
+        }
+        if count < 2 {
+            return only;
+        }
+        let last = only;
+        chooser.choose_by(u, Purpose::Scatter, |u| {
+            let (mut left, mut sum) = (count, total);
+            for branch in self.branches(shares) {
+                left -= 1;
+                // Rounding of the sum can only make the rest, of no weight beside this one, unreachable.
+                if left == 0 || branch.weight >= sum || u.happens(branch.weight / sum) {
+                    return Some(branch);
+                }
+                sum -= branch.weight;
+            }
+            last
+        })
+    }
+
+    /// The coordinates of every branch that gives wo.
+    pub fn invert(&self, shares: Option<[f64; 3]>, quantity: Quantity, wo: DVec3) -> Vec<(u64, f64)> {
+        let branches: Vec<Branch> = self.branches(shares).collect();
+        let mut found = Vec::new();
+        // Probabilities of the events that were refused before this branch.
+        let mut refused: Vec<f64> = Vec::new();
+        let mut sum: f64 = branches.iter().map(|b| b.weight).sum();
+        for (k, branch) in branches.iter().enumerate() {
+            let is_last = k + 1 == branches.len() || branch.weight >= sum;
+            let probability = branch.weight / sum;
+            if let Some((layer, _)) = self.lobes[branch.lobe].as_ref().filter(|(l, _)| l.quantity == quantity)
+            {
+                let (theta, phi) = angles(&self.axes(layer), wo);
+                if let Some((inside, u2)) = layer.grids.invert(branch.slice, theta, phi) {
+                    let own = if is_last { inside } else { invert_event(probability, true, inside) };
+                    let u1 = refused.iter().rev().fold(own, |u, p| invert_event(*p, false, u));
+                    found.push((u1, u2));
+                }
+            }
+            if is_last {
+                break;
+            }
+            refused.push(probability);
+            sum -= branch.weight;
+        }
+        found
+    }
+
+    /// Proposals of white light, times the chance of being scattered: (inside cells, against a slice's largest).
+    pub fn proposals(&self, shares: Option<[f64; 3]>) -> (f64, f64) {
+        let (mut cells, mut table) = (0.0, 0.0);
+        for branch in self.branches(shares) {
+            if let Some((layer, _)) = &self.lobes[branch.lobe] {
+                let (in_cell, in_table) = layer.grids.proposals(branch.slice);
+                cells += branch.weight * in_cell;
+                table += branch.weight * in_table;
+            }
+        }
+        (cells, table)
+    }
+}
+
+/// By inverse functions: the cell on what is left of `u`, then theta, then phi on a coordinate of its own.
+#[inline]
+fn invert<C: Chooser>(
+    grids: &CompactGrids,
+    slice: usize,
+    mut u: Reusable,
+    solver: Solver,
+    chooser: &mut C,
+) -> GridPoint {
+    let cell = choose_cell(grids, slice, &mut u, chooser);
+    let u_theta = chooser.rest(u, Purpose::Scatter);
+    let u_phi = chooser.uniform(Purpose::Scatter);
+    grids.place(slice, cell, u_theta, u_phi, solver)
+}
+
+#[inline]
+fn choose_cell<C: Chooser>(grids: &CompactGrids, slice: usize, u: &mut Reusable, chooser: &mut C) -> usize {
+    if grids.is_single(slice) {
+        return grids.choose(slice, u);
+    }
+    chooser.choose_by(u, Purpose::Scatter, |u| grids.choose(slice, u))
+}
+
+/// By rejection. A photon on its way cannot go on with another point of the sequence, so of the two ways against the table's
+/// maximum both take the photon's next coordinates.
+#[inline(never)]
+fn reject<C: Chooser>(
+    grids: &CompactGrids,
+    slice: usize,
+    mut u: Reusable,
+    rejection: Rejection,
+    chooser: &mut C,
+) -> GridPoint {
+    let cell = match rejection {
+        Rejection::Cell => Some(choose_cell(grids, slice, &mut u, chooser)),
+        Rejection::Table | Rejection::NextPoint => None,
+    };
+    let mut u_theta = chooser.rest(u, Purpose::Scatter);
+    loop {
+        let u_phi = chooser.uniform(Purpose::Scatter);
+        let (point, value) = match cell {
+            Some(cell) => grids.propose_in_cell(slice, cell, u_theta, u_phi),
+            None => grids.propose(slice, u_theta, u_phi),
+        };
+        if chooser.uniform(Purpose::Acceptance) < value {
+            return point;
+        }
+        u_theta = chooser.uniform(Purpose::Scatter);
+    }
+}
+
+/// (theta, phi) of a direction in a frame.
+fn angles(axes: &DMat3, wo: DVec3) -> (f64, f64) {
+    let d = DVec3::new(wo.dot(axes.x_axis), wo.dot(axes.y_axis), wo.dot(axes.z_axis));
+    (libm::atan2(libm::hypot(d.x, d.y), d.z), libm::atan2(d.y, d.x))
+}
+
+/// Two given coordinates.
+pub(super) struct Given {
+    pub u1: u64,
+    pub u2: f64,
+    pub solver: Solver,
+}
+
+impl Chooser for Given {
+    fn happens(&mut self, probability: f64) -> bool {
+        probability >= 1.0
+    }
+
+    fn uniform(&mut self, _: Purpose) -> f64 {
+        self.u2
+    }
+
+    fn reusable(&mut self, _: Purpose) -> Reusable {
+        Reusable::fresh(self.u1)
+    }
+
+    fn choose_by<R>(&mut self, u: &mut Reusable, _: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        choice(u)
+    }
+
+    fn rest(&mut self, u: Reusable, _: Purpose) -> f64 {
+        to_unit_f64(u.bits())
+    }
+
+    fn sampling(&self) -> Sampling {
+        Sampling::Inverse(self.solver)
+    }
+}
