@@ -12,6 +12,7 @@
 pub mod dielectric;
 pub mod lambertian;
 pub mod mirror;
+pub mod reference;
 pub mod reflectance;
 pub mod tabulated;
 pub mod throughput;
@@ -21,6 +22,7 @@ use glam::DVec3;
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use reference::Reference;
 pub use reflectance::Reflectance;
 pub use tabulated::Tabulated;
 pub use throughput::{Fixed, Grey, Rgb, Throughput};

@@ -1,5 +1,6 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
+pub mod bsdf;
 pub mod check;
 pub mod compare;
 mod compare_room;
@@ -55,14 +56,8 @@ enum Sub {
     Compare(compare::CompareArgs),
     /// Sample directions of a photometric file, and judge them against its candela.
     Sample(SampleArgs),
-    /// Say what a BSDF file holds (not available yet).
-    Bsdf(Later),
-}
-
-#[derive(Debug, Args)]
-struct Later {
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    rest: Vec<String>,
+    /// Say what a scattering table (BSDF) holds: kind, angles, albedo against incidence, reciprocity.
+    Bsdf(BsdfArgs),
 }
 
 /// Arguments of `caustix render`.
@@ -139,6 +134,19 @@ pub struct PhotometryArgs {
     pub plot: Option<PathBuf>,
 }
 
+/// Arguments of `caustix bsdf`.
+#[derive(Debug, Args)]
+pub struct BsdfArgs {
+    /// Scattering table: caustix text, Zemax/Radiant .bsdf, MERL or Klems XML.
+    pub file: PathBuf,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Write a polar diagram of the plane of incidence (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
 /// Arguments of `caustix sample`.
 #[derive(Debug, Args)]
 pub struct SampleArgs {
@@ -192,7 +200,7 @@ pub fn main() -> ExitCode {
         Some(Sub::Check(args)) => check::run(&args),
         Some(Sub::Compare(args)) => compare::run(&args),
         Some(Sub::Sample(args)) => sample::run(&args),
-        Some(Sub::Bsdf(_)) => not_available("bsdf"),
+        Some(Sub::Bsdf(args)) => bsdf::run(&args),
     };
     ExitCode::from(code)
 }

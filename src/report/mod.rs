@@ -1,6 +1,8 @@
 //! What a run says: report.json, the printed summary, the files of each receiver; what a study says: [`compare`].
 
 pub mod attributes;
+pub mod bsdf;
+pub mod bsdf_plot;
 pub mod candela;
 pub mod compare;
 pub mod json;

@@ -36,16 +36,16 @@ pub struct PolarPlot {
     pub footer: Vec<String>,
 }
 
-const WIDTH: usize = 640;
-const RADIUS: f64 = 236.0;
-const MARGIN: f64 = 24.0;
-const TITLE_SIZE: f64 = 18.0;
-const TEXT_SIZE: f64 = 13.0;
-const TICK_SIZE: f64 = 12.0;
-const LINE_HEIGHT: f64 = 20.0;
-const RAY_STEP_DEG: usize = 15;
+pub(super) const WIDTH: usize = 640;
+pub(super) const RADIUS: f64 = 236.0;
+pub(super) const MARGIN: f64 = 24.0;
+pub(super) const TITLE_SIZE: f64 = 18.0;
+pub(super) const TEXT_SIZE: f64 = 13.0;
+pub(super) const TICK_SIZE: f64 = 12.0;
+pub(super) const LINE_HEIGHT: f64 = 20.0;
+pub(super) const RAY_STEP_DEG: usize = 15;
 /// Most rings there are.
-const RINGS: usize = 7;
+pub(super) const RINGS: usize = 7;
 
 /// The measures of one diagram.
 struct Frame {
@@ -227,23 +227,23 @@ fn draw_ring_labels(shapes: &mut Vec<Shape>, frame: &Frame) {
     }
 }
 
-fn curve_pen(index: usize, dashed: bool) -> Pen {
+pub(super) fn curve_pen(index: usize, dashed: bool) -> Pen {
     let colours = [(0x14, 0x5d, 0xa8), (0xd2, 0x3b, 0x2a), (0x2e, 0x8b, 0x57), (0x8a, 0x4f, 0xa3)];
     let (r, g, b) = colours[index % colours.len()];
     Pen { width_px: 2.2, colour: Colour::srgb(r, g, b), dash_px: dashed.then_some([8.0, 5.5]) }
 }
 
-fn text(at: [f64; 2], text: &str, style: TextStyle) -> Shape {
+pub(super) fn text(at: [f64; 2], text: &str, style: TextStyle) -> Shape {
     Shape::Text { at, text: text.to_owned(), style }
 }
 
 /// The wanted type size, or the smaller one at which the text fits, not below 8.
-fn fitting(text: &str, size_px: f64, room_px: f64) -> f64 {
+pub(super) fn fitting(text: &str, size_px: f64, room_px: f64) -> f64 {
     let width = font::width_px(text, size_px, true);
     if width > room_px { (size_px * room_px / width).floor().max(8.0) } else { size_px }
 }
 
-fn ink() -> Colour {
+pub(super) fn ink() -> Colour {
     Colour::grey(50)
 }
 

@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::bsdf::{Bsdf, Dielectric};
+use crate::bsdf::tabulated::Options;
+use crate::bsdf::{Bsdf, Dielectric, Reference, Tabulated};
 use crate::emitter::collimated::CrossSection;
 use crate::emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
 use crate::error::{Diagnostic, Kind, Result};
@@ -11,6 +12,7 @@ use crate::geometry::{
     Smoothing, Sphere, Surface, Transform, Wave, box_mesh, parse_obj,
 };
 use crate::photometry::lm63;
+use crate::scattering;
 
 use super::description::{
     BeamSection, Description, EmitterDescription, EmitterShape, Facing, HeightfieldDescription, MaterialKind,
@@ -33,12 +35,25 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
     };
     parts.warnings.extend(description.warnings.iter().cloned());
     let mut errors = Vec::new();
+    let mut bsdfs = Vec::with_capacity(description.materials.len());
+    for m in &description.materials {
+        let bsdf = material(description, &m.kind, &mut parts.warnings);
+        bsdfs.push(bsdf.map_err(|e| errors.push(placed(description, m.place, e))).ok());
+    }
     for surface in &description.surfaces {
-        match shape(description, surface, &mut parts.warnings) {
-            Ok(shape) => {
-                let bsdf = material(description.materials[surface.material.index].kind);
-                parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf));
+        let made_of = surface.material.index;
+        let built = shape(description, surface, &mut parts.warnings).and_then(|shape| {
+            // A material in error is reported already.
+            let bsdf = bsdfs[made_of]
+                .as_ref()
+                .map(|bsdf| laid_on(bsdf, &description.materials[made_of].kind, &shape));
+            Ok((shape, bsdf.transpose()?))
+        });
+        match built {
+            Ok((shape, Some(bsdf))) => {
+                parts.surfaces.push((Surface { name: surface.name.clone(), shape }, bsdf))
             }
+            Ok((_, None)) => {}
             Err(e) => errors.push(placed(description, surface.place, e)),
         }
     }
@@ -93,13 +108,48 @@ fn identity(description: &Description) -> Identity {
     }
 }
 
-fn material(kind: MaterialKind) -> Bsdf {
-    match kind {
-        MaterialKind::Dielectric { ior, ior_outside } => Bsdf::Dielectric(Dielectric { ior_outside, ior }),
-        MaterialKind::Mirror { reflectance } => Bsdf::Mirror { reflectance },
-        MaterialKind::Lambertian { reflectance } => Bsdf::Lambertian { reflectance },
+fn material(d: &Description, kind: &MaterialKind, warnings: &mut Vec<Diagnostic>) -> Result<Bsdf> {
+    Ok(match kind {
+        MaterialKind::Dielectric { ior, ior_outside } => {
+            Bsdf::Dielectric(Dielectric { ior_outside: *ior_outside, ior: *ior })
+        }
+        MaterialKind::Mirror { reflectance } => Bsdf::Mirror { reflectance: *reflectance },
+        MaterialKind::Lambertian { reflectance } => Bsdf::Lambertian { reflectance: *reflectance },
         MaterialKind::Absorber => Bsdf::Absorber,
-    }
+        MaterialKind::Tabulated(tabulated) => {
+            let file = &tabulated.file;
+            // Messages name the file by its path, or as it is written in a scene without a folder.
+            let path = d.source.path(&file.value).unwrap_or_else(|| file.value.clone().into());
+            let name = path.display().to_string();
+            let table = scattering::parse(&d.load(file)?, &name)?;
+            warnings.extend(table.warnings.iter().cloned());
+            let options = Options {
+                energy: tabulated.energy,
+                sides: tabulated.sides,
+                rotation_deg: tabulated.rotation_deg,
+                specular_remainder: tabulated.specular_remainder,
+                ..Options::default()
+            };
+            let (bsdf, found) = Tabulated::new(&table, &options).map_err(|e| e.in_file(&name))?;
+            warnings.extend(found.into_iter().map(|w| w.in_file(&name)));
+            Bsdf::Tabulated(Box::new(bsdf))
+        }
+    })
+}
+
+/// A material on a surface: a table is told which direction its azimuths are counted from there.
+fn laid_on(bsdf: &Bsdf, kind: &MaterialKind, shape: &Shape) -> Result<Bsdf> {
+    let (Bsdf::Tabulated(table), MaterialKind::Tabulated(tabulated)) = (bsdf, kind) else {
+        return Ok(bsdf.clone());
+    };
+    let own = || match shape {
+        Shape::Rectangle(rectangle) => Reference::Along(rectangle.edge_u()),
+        Shape::Paraboloid(paraboloid) => Reference::Around(paraboloid.axis()),
+        Shape::Sphere(_) => Reference::Around(DVec3::Z),
+        Shape::Mesh(_) => Reference::Along(DVec3::X),
+    };
+    let reference = tabulated.reference.map_or_else(own, Reference::Along);
+    Ok(Bsdf::Tabulated(Box::new(table.with_reference(reference)?)))
 }
 
 fn shape(d: &Description, surface: &SurfaceDescription, warnings: &mut Vec<Diagnostic>) -> Result<Shape> {

@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
 use crate::bsdf::Reflectance;
+use crate::bsdf::tabulated::{Energy, Sides};
 use crate::error::{Diagnostic, Kind, Result};
 
 /// A place in a scene file, both counted from 1; columns count characters.
@@ -97,11 +98,15 @@ impl Description {
         self.files().filter_map(missing).collect()
     }
 
-    /// The files this scene names, in the order emitters, surfaces.
+    /// The files this scene names, in the order emitters, materials, surfaces.
     pub fn files(&self) -> impl Iterator<Item = &Placed<String>> {
         let emitters = self.emitters.iter().filter_map(|e| match &e.shape {
             EmitterShape::Photometric { file, .. } => Some(file),
             EmitterShape::Isotropic | EmitterShape::Collimated { .. } | EmitterShape::Panel { .. } => None,
+        });
+        let materials = self.materials.iter().filter_map(|m| match &m.kind {
+            MaterialKind::Tabulated(tabulated) => Some(&tabulated.file),
+            _ => None,
         });
         let surfaces = self.surfaces.iter().filter_map(|s| match &s.shape {
             ShapeDescription::Mesh { file, .. } => Some(file),
@@ -111,7 +116,7 @@ impl Description {
             },
             _ => None,
         });
-        emitters.chain(surfaces)
+        emitters.chain(materials).chain(surfaces)
     }
 
     fn pointed_at(&self, place: Place, error: Diagnostic) -> Diagnostic {
@@ -203,7 +208,7 @@ pub struct MaterialDescription {
 }
 
 /// What a material does with light.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum MaterialKind {
     /// A smooth interface between two clear media.
     Dielectric {
@@ -224,6 +229,27 @@ pub enum MaterialKind {
     },
     /// Absorbs everything.
     Absorber,
+    /// Scatters as a table says.
+    Tabulated(TabulatedDescription),
+}
+
+/// A scattering table on a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedDescription {
+    /// The file, as named.
+    pub file: Placed<String>,
+    /// Which side of the surface is the table's front.
+    pub sides: Sides,
+    /// Turn of the table against the surface's reference direction, in degrees, counter-clockwise seen from the tip of the
+    /// outward normal.
+    pub rotation_deg: f64,
+    /// Unit vector whose part along the surface is the reference direction; `None`: the shape's own.
+    pub reference: Option<DVec3>,
+    /// What happens where the table scatters more than arrives.
+    pub energy: Energy,
+    /// Whether what the table leaves goes on straight through (mirrored, where the table only reflects) instead of being
+    /// absorbed.
+    pub specular_remainder: bool,
 }
 
 /// A `[[surface]]`.

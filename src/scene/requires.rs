@@ -35,6 +35,7 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
             "diffuse scattering",
             bsdf(|b| matches!(b, Bsdf::Lambertian { reflectance } if reflectance.luminous() > 0.0)),
         ),
+        ("tabulated scattering", bsdf(|b| matches!(b, Bsdf::Tabulated(_)))),
         ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
         ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),

@@ -27,9 +27,8 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::throughput::Fate;
-use super::{Incidence, Outcome, Reflectance, Throughput};
+use super::{Incidence, Outcome, Reference, Reflectance, Throughput};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::math::frame::{frame_about, unit};
 use crate::math::solve::Solver;
 use crate::sample::coordinates::Chooser;
 use crate::scattering::{Quantity, ScatterTable};
@@ -68,9 +67,8 @@ pub struct Options {
     pub energy: Energy,
     /// Which side is which.
     pub sides: Sides,
-    /// A direction in the world; its part along a facet is the surface's reference direction (where it has none, some
-    /// fixed one). Only tables with several phi_i depend on it.
-    pub reference: DVec3,
+    /// The surface's reference direction. Only tables with several phi_i depend on it.
+    pub reference: Reference,
     /// Turn of the table's reference direction against the surface's, counter-clockwise seen from the tip of the outward
     /// normal.
     pub rotation_deg: f64,
@@ -84,7 +82,7 @@ impl Default for Options {
         Self {
             energy: Energy::default(),
             sides: Sides::default(),
-            reference: DVec3::X,
+            reference: Reference::default(),
             rotation_deg: 0.0,
             specular_remainder: false,
         }
@@ -97,7 +95,7 @@ pub struct Tabulated {
     layers: Arc<[Layer]>,
     /// For light from the front and from the back.
     faces: [Face; 2],
-    reference: DVec3,
+    reference: Reference,
     /// (sin, cos) of the rotation.
     turn: (f64, f64),
 }
@@ -140,7 +138,7 @@ impl Tabulated {
         let faces = faces(table, &layers, options);
         let warnings = energy::check(&mut layers, &faces, options.energy)?;
         let turn = libm::sincos(options.rotation_deg.to_radians());
-        let this = Self { layers: layers.into(), faces, reference: DVec3::X, turn };
+        let this = Self { layers: layers.into(), faces, reference: Reference::default(), turn };
         Ok((this.with_reference(options.reference)?, warnings))
     }
 
@@ -148,11 +146,8 @@ impl Tabulated {
     ///
     /// # Errors
     /// A reference without direction.
-    pub fn with_reference(&self, reference: DVec3) -> Result<Self> {
-        let reference = unit(reference).ok_or_else(|| {
-            Diagnostic::new(Kind::Range, format!("the reference direction {reference}"), "a direction")
-        })?;
-        Ok(Self { reference, ..self.clone() })
+    pub fn with_reference(&self, reference: Reference) -> Result<Self> {
+        Ok(Self { reference: reference.normalised()?, ..self.clone() })
     }
 
     /// Whether it treats channels differently.
@@ -177,10 +172,7 @@ impl Tabulated {
     /// The table's reference direction on a facet with this outward normal.
     #[inline]
     fn tangent(&self, outward: DVec3) -> DVec3 {
-        let along = self.reference - self.reference.dot(outward) * outward;
-        // Parallel as far as f64 can tell: rounding is all that is left.
-        let parallel = along.length_squared() <= (8.0 * f64::EPSILON) * (8.0 * f64::EPSILON);
-        let x = if parallel { frame_about(outward).x_axis } else { along.normalize() };
+        let x = self.reference.tangent(outward);
         let (sin, cos) = self.turn;
         cos * x + sin * outward.cross(x)
     }

@@ -1,8 +1,10 @@
-//! `[material.NAME]`: dielectric, mirror, lambertian, absorber.
+//! `[material.NAME]`: dielectric, mirror, lambertian, absorber, tabulated.
 
+use super::{ANGLE, direction};
 use crate::bsdf::Reflectance;
+use crate::bsdf::tabulated::{Energy, Sides};
 use crate::error::Kind;
-use crate::scene::description::{MaterialDescription, MaterialKind};
+use crate::scene::description::{MaterialDescription, MaterialKind, TabulatedDescription};
 use crate::scene::toml_table::{Interval, Table};
 
 const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
@@ -14,22 +16,29 @@ enum Type {
     Mirror,
     Lambertian,
     Absorber,
+    Tabulated,
 }
 
-const TYPES: [(&str, Type); 4] = [
+const TYPES: [(&str, Type); 5] = [
     ("dielectric", Type::Dielectric),
     ("mirror", Type::Mirror),
     ("lambertian", Type::Lambertian),
     ("absorber", Type::Absorber),
+    ("tabulated", Type::Tabulated),
 ];
+
+const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back), ("both", Sides::Both)];
+
+const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
 
 pub(super) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDescription> {
     let place = table.place();
-    if table.is_unavailable("type", &["conductor", "tabulated"], &TYPES.map(|(word, _)| word)) {
+    if table.is_unavailable("type", &["conductor"], &TYPES.map(|(word, _)| word)) {
         return None;
     }
     let kind = table.word("type", &TYPES);
-    let kind = table.require("type", kind, "\"dielectric\", \"mirror\", \"lambertian\" or \"absorber\"")?;
+    let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
+    let kind = table.require("type", kind, required)?;
     let kind = match kind {
         Type::Dielectric => read_dielectric(&mut table),
         Type::Mirror => {
@@ -47,6 +56,7 @@ pub(super) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDes
             table.call("an absorber");
             Some(MaterialKind::Absorber)
         }
+        Type::Tabulated => read_tabulated(&mut table),
     };
     table.finish();
     Some(MaterialDescription { name, kind: kind?, place })
@@ -68,4 +78,25 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
         table.document().warn_at(place, Kind::Range, found, "two media that differ: light passes unchanged");
     }
     Some(MaterialKind::Dielectric { ior, ior_outside })
+}
+
+fn read_tabulated(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+    table.call("a tabulated material");
+    let file = table.path("file");
+    let sides = table.word("side", &SIDES).unwrap_or_default();
+    let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
+    let reference = match table.place_of("reference") {
+        Some(_) => Some(direction(table, "reference", None)?),
+        None => None,
+    };
+    let energy = table.word("energy", &ENERGIES).unwrap_or_default();
+    let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
+    Some(MaterialKind::Tabulated(TabulatedDescription {
+        file: file?,
+        sides,
+        rotation_deg,
+        reference,
+        energy,
+        specular_remainder,
+    }))
 }
