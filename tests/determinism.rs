@@ -10,7 +10,7 @@ use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
 use caustix::bsdf::Grey;
-use caustix::image::exr::{Maps, read_maps};
+use caustix::image::exr::{Maps, OwnedData, read_maps};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
@@ -97,6 +97,15 @@ fn reordered(text: &str, order: impl Fn(&mut Vec<String>)) -> String {
         .replace("\"room/", &format!("\"{}/scenes/room/", project().display()))
 }
 
+/// Channels as bits: the pixels beyond the last face of a mesh are NaN, which is not equal to itself.
+fn bits(maps: &Maps) -> Vec<(&str, Vec<u32>)> {
+    let of = |data: &OwnedData| match data {
+        OwnedData::F32(values) => values.iter().map(|v| v.to_bits()).collect(),
+        OwnedData::U32(values) => values.clone(),
+    };
+    maps.channels.iter().map(|(name, data)| (name.as_str(), of(data))).collect()
+}
+
 #[test]
 fn the_order_of_surfaces_changes_no_pixel() {
     let folder = tempfile::tempdir().unwrap();
@@ -116,7 +125,7 @@ fn the_order_of_surfaces_changes_no_pixel() {
             ("rotated", maps("rotated", &|s| s.rotate_left(1))),
         ] {
             for (a, b) in original.iter().zip(&other) {
-                assert!(a.channels == b.channels, "{name}, {label}");
+                assert!(bits(a) == bits(b), "{name}, {label}");
                 let differ: Vec<&String> =
                     a.attributes.keys().filter(|k| a.attributes.get(*k) != b.attributes.get(*k)).collect();
                 assert!(

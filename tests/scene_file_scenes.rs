@@ -195,7 +195,7 @@ fn every_example_of_the_manual_reads() {
     // The others are parts of one scene, but for the glass of the first.
     let parts = blocks[1..].concat() + "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n";
     let scene = parse(&parts, "manual", Base::BuiltIn).unwrap();
-    assert_eq!((scene.emitters.len(), scene.surfaces.len(), scene.receivers.len()), (3, 8, 2));
+    assert_eq!((scene.emitters.len(), scene.surfaces.len(), scene.receivers.len()), (4, 8, 2));
     assert_eq!(scene.run.photons.unwrap().value, 1 << 24);
 }
 

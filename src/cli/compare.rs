@@ -58,7 +58,7 @@ pub struct CompareArgs {
     /// Cells along each side of the grids that errors are measured on [default: 48,128,256].
     #[arg(long, value_name = "K,K,...", value_delimiter = ',')]
     pub cells: Vec<u32>,
-    /// More variants: every form of rejection, other solvers and sequences. In a scene with [compare], 10^7 photons.
+    /// More variants: every form of rejection, other solvers and sequences. In a scene with `[compare]`: 10^7 photons.
     #[arg(long)]
     pub full: bool,
     /// The least number of photons of which errors are taken; from there powers of two up to N [default: N / 256].

@@ -24,7 +24,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel of this centre and size [m] that shines towards `aim`; `aim` and `up` are orthogonal unit vectors.
+    /// A panel of this centre and size (m) that shines towards `aim`; `aim` and `up` are orthogonal unit vectors.
     pub fn new(centre: DVec3, aim: DVec3, up: DVec3, size_m: [f64; 2], flux_lm: f64) -> Self {
         Self { centre, axes: DMat3::from_cols(aim.cross(up), up, aim), size_m, flux_lm }
     }

@@ -193,4 +193,21 @@ mod tests {
         }
         assert!(count.iter().all(|&c| c == 1));
     }
+
+    #[test]
+    fn probabilities_that_sum_to_one_but_for_rounding_fill_the_line() {
+        let tenths = [0.1; 10];
+        assert_eq!(tenths.iter().sum::<f64>(), 1.0 - f64::EPSILON / 2.0);
+        let above = [0.25, 0.25, 0.25, 0.25 + f64::EPSILON];
+        assert_eq!(above.iter().sum::<f64>(), 1.0 + f64::EPSILON);
+        for weights in [&tenths[..], &above[..]] {
+            let with_ends = [&[0.0], weights, &[0.0]].concat();
+            let widths = integer_widths(&with_ends).unwrap();
+            assert_eq!(widths.iter().map(|w| u128::from(*w)).sum::<u128>(), 1 << 64);
+            assert_eq!((widths[0], widths[widths.len() - 1]), (0, 0), "nothing lands on the ends");
+            for (w, p) in widths.iter().zip(&with_ends) {
+                assert!((*w as f64 / TWO_TO_64 - p).abs() <= 4.0 * f64::EPSILON);
+            }
+        }
+    }
 }

@@ -284,4 +284,29 @@ mod tests {
         let z = (count - 0.3 * n as f64) / (n as f64 * 0.21).sqrt();
         assert!(z.abs() < 4.0, "{z}");
     }
+
+    #[test]
+    fn sixty_reuses_in_a_row_keep_their_frequencies() {
+        // Events of probability 0.9 spend 0.15 or 3.3 bits each: 60 of them share one or two coordinates. The last and
+        // the one before it are as likely as the first, and independent of each other.
+        let points = IndependentPoints::new(5, 0);
+        let n = 100_000;
+        let (mut first, mut last, mut both, mut most) = (0.0, 0.0, 0.0, 0);
+        for i in 0..n {
+            let mut c = Coordinates::new(&points, i, true);
+            first += f64::from(u8::from(c.happens(0.9)));
+            (0..57).for_each(|_| {
+                c.happens(0.9);
+            });
+            let (a, b) = (c.happens(0.9), c.happens(0.9));
+            last += f64::from(u8::from(b));
+            both += f64::from(u8::from(a && b));
+            most = most.max(c.drawn());
+        }
+        let z = |count: f64, p: f64| (count - p * n as f64) / (n as f64 * p * (1.0 - p)).sqrt();
+        for z in [z(first, 0.9), z(last, 0.9), z(both, 0.81)] {
+            assert!(z.abs() < 4.0, "{z}");
+        }
+        assert!(most == 2, "{most}");
+    }
 }

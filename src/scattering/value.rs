@@ -23,7 +23,8 @@ pub fn value(lobe: &Lobe, channel: usize, wi: DVec3, wo: DVec3) -> f64 {
     }
     let across = (wi.x * wi.x + wi.y * wi.y).sqrt();
     let theta_i = atan2(across, wi.z);
-    let phi_i = atan2(wi.y, wi.x).to_degrees();
+    // At normal incidence the azimuth is free; 0 is what t is taken for there.
+    let phi_i = if across > 0.0 { atan2(wi.y, wi.x).to_degrees() } else { 0.0 };
     let (polar, azimuth) = scattered_angles(lobe, wi, wo, theta_i, across);
     let thetas = between(&lobe.theta_i_deg, theta_i.to_degrees());
     let phis = if lobe.is_isotropic() {

@@ -69,7 +69,8 @@ fn read(words: &mut Words, name: &str) -> Result<ScatterTable> {
     let end = words.place(Diagnostic::new(Kind::Missing, "the end of the file", "DataBegin and a table"));
     let Some(layout) = header.read.take() else { return Err(end) };
     let data = layout.lobe(spectra, &mut warnings).ok_or(end)?;
-    ScatterTable::new(name, vec![data], warnings)
+    // What the angles are together is judged at the end.
+    ScatterTable::new(name, vec![data], warnings).map_err(|d| words.place(d))
 }
 
 fn spectral(word: &Word) -> Option<usize> {
