@@ -136,7 +136,7 @@ pub struct ExceptionsReport {
     pub skipped_crossings: u64,
     /// Directions that smooth normals sent to the wrong side of a facet and that were mirrored back.
     pub corrected_directions: u64,
-    /// Photons that a scattering table sent below the horizon of its surface, where they are absorbed.
+    /// Photons that scattering tables sent below the horizon, absorbed there.
     pub below_horizon: u64,
 }
 

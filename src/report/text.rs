@@ -75,8 +75,11 @@ fn write_all(
         )?;
     }
     if exceptions.below_horizon > 0 {
-        let photons = grouped(exceptions.below_horizon);
-        writeln!(out, "absorbed   {photons} photons that tables sent below the horizon of their surface")?;
+        writeln!(
+            out,
+            "horizon    {} photons sent below it by scattering tables, absorbed there",
+            grouped(exceptions.below_horizon)
+        )?;
     }
     Ok(())
 }
