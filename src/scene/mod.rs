@@ -15,7 +15,7 @@ pub mod source;
 pub mod suggest;
 pub mod toml_table;
 
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, Tabulated};
 use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
@@ -155,9 +155,18 @@ impl Scene {
         self.starts[emitter]
     }
 
-    /// Bytes held by geometry and emitters.
+    /// Bytes held by geometry, emitters and scattering tables.
     pub fn memory_bytes(&self) -> usize {
         let emitters: usize = self.emitters.as_slice().iter().map(Emitter::memory_bytes).sum();
-        self.geometry.memory_bytes() + emitters
+        let mut tables: Vec<&Tabulated> = Vec::new();
+        for bsdf in &self.bsdfs {
+            if let Bsdf::Tabulated(table) = bsdf
+                && !tables.iter().any(|other| other.shares_table_with(table))
+            {
+                tables.push(table);
+            }
+        }
+        let tables: usize = tables.into_iter().map(Tabulated::memory_bytes).sum();
+        self.geometry.memory_bytes() + emitters + tables
     }
 }

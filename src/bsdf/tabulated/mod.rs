@@ -165,6 +165,11 @@ impl Tabulated {
         self.layers.iter().map(|layer| layer.grids.memory_bytes()).sum()
     }
 
+    /// Whether both are copies of one surface, which share its table.
+    pub fn shares_table_with(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.layers, &other.layers)
+    }
+
     fn face(&self, from_front: bool) -> &Face {
         &self.faces[usize::from(!from_front)]
     }
