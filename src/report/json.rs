@@ -136,6 +136,8 @@ pub struct ExceptionsReport {
     pub skipped_crossings: u64,
     /// Directions that smooth normals sent to the wrong side of a facet and that were mirrored back.
     pub corrected_directions: u64,
+    /// Photons that scattering tables sent below the horizon, absorbed there.
+    pub below_horizon: u64,
 }
 
 /// One receiver.
@@ -240,6 +242,7 @@ impl Report {
             exceptions: ExceptionsReport {
                 skipped_crossings: outcome.census.exceptions.skipped_crossings,
                 corrected_directions: outcome.census.exceptions.corrected_directions,
+                below_horizon: outcome.census.exceptions.below_horizon,
             },
             receivers: scene
                 .receivers

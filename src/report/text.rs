@@ -74,6 +74,13 @@ fn write_all(
             grouped(exceptions.skipped_crossings)
         )?;
     }
+    if exceptions.below_horizon > 0 {
+        writeln!(
+            out,
+            "horizon    {} photons sent below it by scattering tables, absorbed there",
+            grouped(exceptions.below_horizon)
+        )?;
+    }
     Ok(())
 }
 

@@ -25,6 +25,8 @@ pub const MAX_NODES: usize = 1 << 22;
 #[derive(Debug, Clone)]
 pub struct CompactGrids {
     rows: Vec<Row>,
+    /// Of each row, F(dt) of the edge sums (1, 0) and (0, 1).
+    masses: Vec<[f64; 2]>,
     columns: Vec<Column>,
     /// `[slice][polar][azimuth]`, in units of the slice's largest.
     nodes: Vec<f32>,
@@ -75,6 +77,7 @@ impl CompactGrids {
         let columns: Vec<Column> = azimuth.windows(2).map(|w| Column::new(w[0], w[1])).collect();
         let guide_bits = (rows.len() * columns.len()).ilog2();
         Ok(Self {
+            masses: rows.iter().map(Row::masses).collect(),
             rows,
             columns,
             nodes: Vec::new(),
@@ -135,11 +138,9 @@ impl CompactGrids {
     /// Fluxes of the cells, in units of the largest node.
     fn fluxes(&self, nodes: &[f32]) -> Vec<f64> {
         let mut fluxes = Vec::with_capacity(self.cell_count());
-        for (i, row) in self.rows.iter().enumerate() {
+        for i in 0..self.rows.len() {
             for (j, column) in self.columns.iter().enumerate() {
-                let corners = self.corners(nodes, i, j);
-                let cell = Cell::new(row, i as u32, j as u32, corners);
-                fluxes.push(cell.map_or(0.0, |cell| cell.flux(column)));
+                fluxes.push(0.5 * column.width * self.mass(i, self.corners(nodes, i, j)));
             }
         }
         fluxes
@@ -394,6 +395,7 @@ impl CompactGrids {
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
         self.rows.capacity() * size_of::<Row>()
+            + self.masses.capacity() * size_of::<[f64; 2]>()
             + self.columns.capacity() * size_of::<Column>()
             + self.nodes.capacity() * size_of::<f32>()
             + self.low.capacity() * size_of::<u64>()
@@ -428,11 +430,18 @@ impl CompactGrids {
         [near[0], near[1], far[0], far[1]].map(f64::from)
     }
 
+    /// F(dt) of a cell.
+    #[inline]
+    fn mass(&self, row: usize, [a1, a2, b1, b2]: [f64; 4]) -> f64 {
+        let [near, far] = self.masses[row];
+        (a1 + a2) * near + (b1 + b2) * far
+    }
+
     /// A cell of positive flux.
     #[inline]
     fn cell(&self, slice: usize, row: usize, column: usize) -> Cell {
         let corners = self.corners(self.nodes_of(slice), row, column);
-        Cell::of_positive_flux(&self.rows[row], row as u32, column as u32, corners)
+        Cell::of_mass(self.mass(row, corners), row as u32, column as u32, corners)
     }
 }
 
