@@ -12,6 +12,26 @@ pub struct Reusable {
     span: f64,
 }
 
+/// The fractions that an event owns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Share {
+    /// The first one.
+    pub low: u64,
+    /// How many; 0 stands for all 2^64.
+    pub width: u64,
+}
+
+impl Share {
+    /// The fraction of the event that leaves this remainder, to the resolution of its width: the inverse of
+    /// [`Reusable::take`].
+    pub fn invert(self, remainder: u64) -> u64 {
+        match self.width {
+            0 => remainder,
+            width => self.low + ((u128::from(remainder) * u128::from(width)) >> 64) as u64,
+        }
+    }
+}
+
 /// Of its 64 bits a coordinate must keep at least 24 for the next use: a span of 2^-40.
 const SMALLEST_SPAN: f64 = 1.0 / (1u64 << 40) as f64;
 
@@ -47,6 +67,14 @@ impl Reusable {
         self.span *= probability;
     }
 
+    /// Renormalises after the event that owns the fractions [low, low + width) was found, this one among them.
+    #[inline]
+    pub fn take(&mut self, Share { low, width }: Share) {
+        if width != 0 {
+            self.renormalised(divide(self.bits - low, width), width as f64 / TWO_TO_64);
+        }
+    }
+
     /// Whether the event of this probability happens, 0 < probability < 1; renormalises the coordinate.
     #[inline]
     pub fn happens(&mut self, probability: f64) -> bool {
@@ -63,14 +91,6 @@ impl Reusable {
     }
 }
 
-/// The inverse of [`Reusable::happens`]: the fraction that answers so and leaves this remainder, to the resolution of the
-/// event's width.
-pub fn invert_event(probability: f64, happened: bool, remainder: u64) -> u64 {
-    let threshold = ((probability * TWO_TO_64) as u64).max(1);
-    let times = |width: u64| ((u128::from(remainder) * u128::from(width)) >> 64) as u64;
-    if happened { times(threshold) } else { threshold + times(threshold.wrapping_neg()) }
-}
-
 /// The number of 64-bit fractions.
 pub(crate) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
@@ -79,7 +99,7 @@ pub(crate) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 /// By a quotient of 53 bits and its correction: two multiplications and one division in f64 instead of a division of
 /// 128 bits by 64, which takes most of an event's time.
 #[inline]
-pub(super) fn divide(d: u64, width: u64) -> u64 {
+fn divide(d: u64, width: u64) -> u64 {
     // Below this width the correction would have too few bits; such events are rarer than 2^-24.
     if width < 1 << 40 {
         return ((u128::from(d) << 64) / u128::from(width)) as u64;

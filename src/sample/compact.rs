@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::cell::{Cell, Column, Row};
-use super::choose::{Reusable, TWO_TO_64, divide, integer_widths};
+use super::choose::{Reusable, Share, TWO_TO_64, integer_widths};
 use super::grid::GridPoint;
 use super::marginal::Polar;
 use super::rejection::{Reached, reach};
@@ -212,8 +212,7 @@ impl CompactGrids {
         let (from, to) = (guide[slot] as usize, guide[slot + 1] as usize);
         // Cells of zero flux share their first fraction with the next one, so the last of equals is the owner.
         let cell = from + low[from..=to].partition_point(|l| *l <= bits) - 1;
-        let width = self.width(slice, cell);
-        u.renormalised(divide(bits - low[cell], width), width as f64 / TWO_TO_64);
+        u.take(Share { low: low[cell], width: self.width(slice, cell) });
         cell
     }
 
@@ -285,8 +284,8 @@ impl CompactGrids {
             return Some((remainder, u2));
         }
         let at = i * self.columns.len() + j;
-        let inside = (u128::from(remainder) * u128::from(self.width(slice, at))) >> 64;
-        Some((self.low_of(slice)[at] + inside as u64, u2))
+        let share = Share { low: self.low_of(slice)[at], width: self.width(slice, at) };
+        Some((share.invert(remainder), u2))
     }
 
     /// The value of a slice at (theta, phi), bilinear; 0 outside the grid.

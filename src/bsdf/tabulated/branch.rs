@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use super::arrival::Arrival;
 use super::layer::{Layer, Mix};
 use crate::math::solve::Solver;
-use crate::sample::choose::{Reusable, invert_event};
+use crate::sample::choose::{Reusable, Share, TWO_TO_64};
 use crate::sample::compact::CompactGrids;
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::sample::grid::GridPoint;
@@ -53,19 +53,33 @@ impl Branches {
         }
     }
 
+    /// The fractions of each branch in turn, until one satisfies: (branch, its share). The last one owns what is left.
+    #[inline]
+    fn find(&self, mut is_it: impl FnMut(Branch, Share) -> bool) -> Option<(Branch, Share)> {
+        let (last, others) = self.as_slice().split_last()?;
+        let scale = TWO_TO_64 / self.total;
+        let (mut sum, mut low) = (0.0, 0);
+        for branch in others {
+            sum += branch.weight;
+            // One too rare for its own fraction has none.
+            let high = (sum * scale) as u64;
+            let share = Share { low, width: high - low };
+            if high > low && is_it(*branch, share) {
+                return Some((*branch, share));
+            }
+            low = high;
+        }
+        let share = Share { low, width: low.wrapping_neg() };
+        is_it(*last, share).then_some((*last, share))
+    }
+
     /// One branch by weight, as one event on `u`.
     #[inline]
-    fn choose(&self, u: &mut Reusable) -> Branch {
-        let (last, others) = (self.length - 1, &self.list[..self.length - 1]);
-        let mut sum = self.total;
-        for branch in others {
-            // Rounding of the sum can only make the rest, of no weight beside this one, unreachable.
-            if branch.weight >= sum || u.happens(branch.weight / sum) {
-                return *branch;
-            }
-            sum -= branch.weight;
-        }
-        self.list[last]
+    fn choose(&self, u: &mut Reusable) -> Option<Branch> {
+        let bits = u.bits();
+        let (branch, share) = self.find(|_, share| share.width == 0 || bits - share.low < share.width)?;
+        u.take(share);
+        Some(branch)
     }
 }
 
@@ -138,7 +152,7 @@ impl<'a> Lobes<'a> {
         let branch = match branches.as_slice() {
             [] => return None,
             [only] => *only,
-            _ => chooser.choose_by(&mut u, Purpose::Scatter, |u| branches.choose(u)),
+            _ => chooser.choose_by(&mut u, Purpose::Scatter, |u| branches.choose(u))?,
         };
         let (layer, mix) = self.lobes[branch.lobe as usize].as_ref()?;
         let slice = branch.slice as usize;
@@ -159,31 +173,17 @@ impl<'a> Lobes<'a> {
 
     /// The coordinates of every branch that gives wo.
     pub fn invert(&self, shares: Option<[f64; 3]>, quantity: Quantity, wo: DVec3) -> Vec<(u64, f64)> {
-        let all = self.branches(shares);
-        let branches = all.as_slice();
         let mut found = Vec::new();
-        // Probabilities of the events that were refused before this branch.
-        let mut refused: Vec<f64> = Vec::new();
-        let mut sum = all.total;
-        for (k, branch) in branches.iter().enumerate() {
-            let is_last = k + 1 == branches.len() || branch.weight >= sum;
-            let probability = branch.weight / sum;
+        let _ = self.branches(shares).find(|branch, share| {
             if let Some((layer, _)) =
                 self.lobes[branch.lobe as usize].as_ref().filter(|(l, _)| l.quantity == quantity)
             {
                 let (theta, phi) = angles(&self.axes(layer), wo);
-                if let Some((inside, u2)) = layer.grids.invert(branch.slice as usize, theta, phi) {
-                    let own = if is_last { inside } else { invert_event(probability, true, inside) };
-                    let u1 = refused.iter().rev().fold(own, |u, p| invert_event(*p, false, u));
-                    found.push((u1, u2));
-                }
+                let inside = layer.grids.invert(branch.slice as usize, theta, phi);
+                found.extend(inside.map(|(remainder, u2)| (share.invert(remainder), u2)));
             }
-            if is_last {
-                break;
-            }
-            refused.push(probability);
-            sum -= branch.weight;
-        }
+            false // All of them.
+        });
         found
     }
 
