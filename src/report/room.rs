@@ -148,6 +148,7 @@ fn write_text(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
 }
 
 fn last_pair(study: &RoomStudy) -> [u64; 2] {
+    let ladder = &study.options.ladder;
     [ladder[ladder.len() - 2], ladder[ladder.len() - 1]]
 }
 
@@ -209,6 +210,7 @@ fn write_markdown(out: &mut String, study: &RoomStudy, command: &str) -> std::fm
 
 /// One of the paper's tables 2 to 5.
 fn write_deviations(out: &mut String, study: &RoomStudy, sequence: usize) -> std::fmt::Result {
+    let ladder = &study.options.ladder;
     let few = &ladder[..ladder.len() - 1];
     writeln!(out, "## {}: between numbers of photons\n", title(sequence))?;
     write!(out, "| N |")?;

@@ -13,7 +13,7 @@ pub(super) fn linear_srgb(xyz: [f64; 3]) -> ([f64; 3], bool) {
     // Cofactors of the first column and so on: Cramer's rule for the three channels.
     let others = [[1, 2], [0, 2], [0, 1]];
     let cofactor = |row: usize, column: usize| {
-        let sign = if (row + column) % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if (row + column).is_multiple_of(2) { 1.0 } else { -1.0 };
         sign * minor(others[row], others[column])
     };
     let determinant: f64 = (0..3).map(|r| m[r][0] * cofactor(r, 0)).sum();

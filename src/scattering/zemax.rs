@@ -46,8 +46,7 @@ fn read(words: &mut Words, name: &str) -> Result<ScatterTable> {
     let mut header = Header::default();
     let mut spectra: [Option<Block>; 3] = [None, None, None];
     let mut warnings = Vec::new();
-    loop {
-        let Some(word) = words.next() else { break };
+    while let Some(word) = words.next() {
         if let Some(channel) = spectral(&word) {
             let begin = words.expect("DataBegin")?;
             if !begin.is("DataBegin") {
@@ -312,7 +311,7 @@ impl Layout {
 
 /// Linear sRGB of three blocks, and how many values lay outside its gamut.
 fn to_rgb(xyz: [&[f32]; 3]) -> (Vec<Vec<f32>>, usize) {
-    let mut rgb = vec![Vec::with_capacity(xyz[0].len()); 3];
+    let mut rgb: Vec<Vec<f32>> = (0..3).map(|_| Vec::with_capacity(xyz[0].len())).collect();
     let mut outside = 0;
     for i in 0..xyz[0].len() {
         let (colour, clipped) = linear_srgb(xyz.map(|channel| f64::from(channel[i])));
