@@ -85,7 +85,7 @@ cells = [4, 4]
 #[test]
 fn what_is_not_built_yet_says_so_and_exits_2() {
     let s = Stranger::new();
-    for line in ["bsdf x.bsdf", "render --error 1", "render --time 3", "render --resume"] {
+    for line in ["render --error 1", "render --time 3", "render --resume"] {
         s.is_told(line, 2, &["not available yet"]);
     }
     assert_eq!(fs::read_dir(s.folder.path()).unwrap().count(), 0);

@@ -58,7 +58,18 @@ fn every_scene_reads_without_a_warning() {
         }
     }
     names.sort();
-    let all = ["ball_lens", "flat_slab", "pool", "prism", "reflector", "room", "wavy_glass"];
+    let all = [
+        "ball_lens",
+        "brushed_reflector",
+        "flat_slab",
+        "opal_cover",
+        "pool",
+        "prism",
+        "reflector",
+        "room",
+        "satin_pane",
+        "wavy_glass",
+    ];
     assert_eq!(names, all.map(|n| format!("{n}.toml")));
 }
 

@@ -5,7 +5,7 @@ mod closed_support;
 mod tabulated_support;
 
 use caustix::bsdf::tabulated::{Energy, Options, Sides};
-use caustix::bsdf::{Bsdf, Grey, Reflectance, Tabulated};
+use caustix::bsdf::{Bsdf, Grey, Reference, Reflectance, Tabulated};
 use caustix::emitter::{Emitter, Isotropic};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::Coordinates;
@@ -151,7 +151,7 @@ fn sides_energy_and_remainder_are_what_the_scene_asks_for() {
     assert_eq!(albedos(&with(Sides::Back)), [false, true]);
     assert_eq!(albedos(&with(Sides::Both)), [true, true]);
     assert!(!with(Sides::Both).transmits(true) && !with(Sides::Both).is_coloured());
-    assert!(with(Sides::Both).with_reference(DVec3::ZERO).is_err());
+    assert!(with(Sides::Both).with_reference(Reference::Along(DVec3::ZERO)).is_err());
     let bad = Options { rotation_deg: f64::NAN, ..Options::default() };
     assert!(Tabulated::new(&single(0.6, LobeSide::Both), &bad).is_err());
     let refused = Tabulated::new(&single(1.2, LobeSide::Both), &Options::default()).unwrap_err();
@@ -258,7 +258,7 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
     assert!(lit(&along_x, -DVec3::Z, false, -DVec3::Y) && !lit(&along_x, -DVec3::Z, false, DVec3::Y));
     let turned = Options { rotation_deg: 90.0, ..Options::default() };
     assert!(lit(&turned, DVec3::Z, true, -DVec3::X) && !lit(&turned, DVec3::Z, true, DVec3::Y));
-    let other = Options { reference: DVec3::new(0.0, 3.0, 7.0), ..Options::default() };
+    let other = Options { reference: Reference::Along(DVec3::new(0.0, 3.0, 7.0)), ..Options::default() };
     assert!(lit(&other, DVec3::Z, true, -DVec3::X) && !lit(&other, DVec3::Z, true, DVec3::Y));
     // A facet across the reference still has some tangent.
     assert!([DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z].into_iter().any(|d| lit(&along_x, DVec3::X, true, d)));

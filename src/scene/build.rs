@@ -130,7 +130,13 @@ fn material(d: &Description, kind: &MaterialKind, warnings: &mut Vec<Diagnostic>
                 specular_remainder: tabulated.specular_remainder,
                 ..Options::default()
             };
-            let (bsdf, found) = Tabulated::new(&table, &options).map_err(|e| e.in_file(&name))?;
+            // The table is as it should be; that it is laid on a surface here is what the scene can change.
+            let refused = |e: Diagnostic| {
+                let found = format!("{} in \"{}\"", e.found(), file.value);
+                let refused = d.diagnostic(file.place, e.kind(), found, e.required());
+                e.advice().map_or_else(|| refused.clone(), |hint| refused.clone().hint(hint))
+            };
+            let (bsdf, found) = Tabulated::new(&table, &options).map_err(refused)?;
             warnings.extend(found.into_iter().map(|w| w.in_file(&name)));
             Bsdf::Tabulated(Box::new(bsdf))
         }
