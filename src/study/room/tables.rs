@@ -86,7 +86,7 @@ impl Row {
     /// Whether the reference is not good enough for this error.
     pub fn is_limited(&self) -> bool {
         // An unknown error of the reference limits everything.
-        !(self.errors.nrms >= LIMITED * self.reference_nrms)
+        self.reference_nrms.is_nan() || self.errors.nrms < LIMITED * self.reference_nrms
     }
 }
 
