@@ -354,13 +354,13 @@ fn a_study_in_small() {
     let deviations = report::deviations_csv(&found);
     assert_eq!(deviations.lines().count(), 1 + 15 + 10);
     assert!(deviations.lines().all(|l| l.split(',').count() == 7));
-    let (text, markdown) = (report::text(&found), report::markdown(&found));
+    let (text, markdown) = (report::text(&found), report::markdown(&found, "caustix compare room.toml"));
     for name in ["random", "Halton", "Faure", "Hammersley", "Sobol'"] {
         assert!(text.contains(name) && markdown.contains(name));
     }
     assert!(text.lines().all(|l| l.chars().count() <= 110), "{text}");
     let folder = tempfile::tempdir().unwrap();
-    let (written, errors) = report::write_files(&found, folder.path());
+    let (written, errors) = report::write_files(&found, "caustix compare room.toml", folder.path());
     assert!(errors.is_empty() && written.len() == 3);
     assert_eq!(std::fs::read_to_string(folder.path().join("compare.csv")).unwrap(), csv);
 }

@@ -10,9 +10,12 @@ use crate::report::compare::{text::text, write_files};
 use crate::report::parts::{Found, Parts, from_bytes, to_bytes};
 use crate::run::{Algorithm, MAX_PHOTONS, Variant};
 use crate::scene::Scene;
+use crate::study::REVISION;
 use crate::study::account::Events;
 use crate::study::cells::Grids;
-use crate::study::reference::{EMISSION_MAP, REPLICATES, Reference, ReferencePlan, trace_replicate};
+use crate::study::reference::{
+    MOST_REFERENCE_PHOTONS, REPLICATES, Reference, ReferencePlan, emission_map, trace_replicate,
+};
 use crate::study::results::{self, Run, Study, VariantResult};
 use crate::study::runs::{LADDER_OCTAVES, Measure, ladder};
 use crate::study::table::Table;
@@ -37,6 +40,9 @@ const FULL: [&str; 7] = [
     "qmc-inverse-reuse:halton-rotation",
     "qmc-inverse-reuse:independent",
 ];
+
+/// Most point sets of a variant.
+const MOST_SEEDS: u32 = 1024;
 
 /// Arguments of `caustix compare`.
 #[derive(Debug, Args)]
@@ -65,7 +71,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub from: Option<String>,
     /// Point sets of each variant.
-    #[arg(long, value_name = "S", default_value = "4", allow_hyphen_values = true, value_parser = whole::<u32, 1, 1024>)]
+    #[arg(long, value_name = "S", default_value = "4", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MOST_SEEDS as u64 }>)]
     pub seeds: u32,
     /// The first seed; the others follow it.
     #[arg(long, value_name = "K", default_value = "1", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
@@ -147,7 +153,8 @@ impl Asked {
     fn new(args: &CompareArgs, scene: &Scene) -> Result<Self> {
         let cells = if args.cells.is_empty() { &DEFAULT_CELLS[..] } else { &args.cells };
         let mut cells = cells.to_vec();
-        cells.dedup();
+        let mut seen = Vec::new();
+        cells.retain(|k| !seen.contains(k) && (seen.push(*k), true).1);
         let grids = Grids::new(scene, &cells)?;
         let photons = count("--photons", args.photons.as_ref())?.unwrap_or(DEFAULT_PHOTONS);
         let from = count("--from", args.from.as_ref())?.unwrap_or((photons >> LADDER_OCTAVES).max(1));
@@ -158,9 +165,9 @@ impl Asked {
                 "1 to 2^48 photons, rising",
             ));
         }
-        let seeds: Vec<u64> = (0..u64::from(args.seeds)).map(|k| args.seed.wrapping_add(k)).collect();
+        let seeds = seeds(args)?;
         let reference_photons = count("--reference-photons", args.reference_photons.as_ref())?
-            .unwrap_or(photons.saturating_mul(REFERENCE_FACTOR));
+            .unwrap_or(photons.saturating_mul(REFERENCE_FACTOR).min(MOST_REFERENCE_PHOTONS));
         Ok(Self {
             grids,
             algorithms: algorithms(args)?,
@@ -186,6 +193,15 @@ impl Asked {
         let of = |a: &Algorithm| self.seeds_of(*a).len() as u64 * self.photons_of(*a);
         self.algorithms.iter().map(of).sum::<u64>().saturating_add(self.reference.photons())
     }
+}
+
+/// The seeds asked for.
+pub(super) fn seeds(args: &CompareArgs) -> Result<Vec<u64>> {
+    if !(1..=MOST_SEEDS).contains(&args.seeds) {
+        let found = format!("--seeds {}", args.seeds);
+        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MOST_SEEDS} seeds")));
+    }
+    Ok((0..u64::from(args.seeds)).map(|k| args.seed.wrapping_add(k)).collect())
 }
 
 fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
@@ -250,7 +266,7 @@ impl Job<'_> {
                 photons: asked.reference.photons(),
                 replicates: REPLICATES,
                 sequence: asked.reference.sequence.name().into(),
-                emission_map: EMISSION_MAP.into(),
+                emission_map: emission_map(self.scene).into(),
                 seed: asked.reference.seed,
                 own_nrms: reference.own_nrms.clone(),
                 factor: asked.reference.photons() as f64 / asked.photons as f64,
@@ -264,11 +280,12 @@ impl Job<'_> {
     fn reference(&self) -> Result<Option<(Reference, String)>> {
         let plan = &self.asked.reference;
         let key = format!(
-            "{}\nreference: {} seed {}, {REPLICATES} x {} photons, {EMISSION_MAP}\ngrids: {:?} of {:?}",
+            "{}\nreference: {} seed {}, {REPLICATES} x {} photons, {}\ngrids: {:?} of {:?}",
             scene_key(self.scene),
             plan.sequence.name(),
             plan.seed,
             plan.photons_per_replicate,
+            emission_map(self.scene),
             self.asked.grids.labels,
             self.asked.grids.names,
         );
@@ -346,7 +363,8 @@ impl Job<'_> {
 /// All that a scene's photons depend on.
 pub(super) fn scene_key(scene: &Scene) -> String {
     let identity = &scene.identity;
-    let mut key = format!("caustix {}\nscene {}", env!("CARGO_PKG_VERSION"), identity.sha256);
+    let version = env!("CARGO_PKG_VERSION");
+    let mut key = format!("caustix {version} revision {REVISION}\nscene {}", identity.sha256);
     for (file, sha256) in &identity.files {
         key.push_str(&format!("\nfile {sha256} {file}"));
     }
@@ -366,7 +384,7 @@ pub(super) fn found(parts: &Parts, progress: &Progress, kind: &str, key: &str) -
 }
 
 /// The command as it was typed, without the folder that the program lies in.
-fn command_line() -> String {
+pub(super) fn command_line() -> String {
     let quoted = |word: String| {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:^=+".contains(c);
         if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{word}'") }

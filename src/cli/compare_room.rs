@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::study::room::measure::{Measurement, Task, measure};
 use crate::study::room::{Options, RoomStudy};
 
-use super::compare::{CompareArgs, found, scene_key};
+use super::compare::{CompareArgs, command_line, found, scene_key, seeds};
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::render::{make_directory, thread_pool};
 use super::{exit, print, say};
@@ -19,7 +19,7 @@ pub(super) fn compare(args: &CompareArgs, scene: &Scene) -> Result<u8, Vec<Diagn
     let one = |e: Diagnostic| vec![e];
     refuse_what_has_no_meaning(args).map_err(one)?;
     let mut options = Options::new(args.full);
-    options.seeds = (0..u64::from(args.seeds)).map(|k| args.seed.wrapping_add(k)).collect();
+    options.seeds = seeds(args).map_err(one)?;
     make_directory(&args.output).map_err(one)?;
     catch_interrupts();
     let pool = thread_pool(args.threads).map_err(one)?;
@@ -45,7 +45,7 @@ pub(super) fn compare(args: &CompareArgs, scene: &Scene) -> Result<u8, Vec<Diagn
         return Ok(exit::INTERRUPTED);
     }
     let study = RoomStudy::new(scene, &options, &measurements).map_err(one)?;
-    let (_, errors) = write_files(&study, &args.output);
+    let (_, errors) = write_files(&study, &command_line(), &args.output);
     if !args.quiet {
         print(&text(&study));
         print(&format!("written to {}\n", args.output.display()));

@@ -172,17 +172,15 @@ fn paper_between(first: usize, second: usize, photons: u64) -> Option<f64> {
 }
 
 /// The tables as Markdown, with the command that makes them.
-pub fn markdown(study: &RoomStudy) -> String {
+pub fn markdown(study: &RoomStudy, command: &str) -> String {
     let mut out = String::new();
-    let _infallible = write_markdown(&mut out, study);
+    let _infallible = write_markdown(&mut out, study, command);
     out
 }
 
-fn write_markdown(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
-    let ladder = &study.options.ladder;
-    let full = if ladder.contains(&PAPER_MASTER) { " --full" } else { "" };
+fn write_markdown(out: &mut String, study: &RoomStudy, command: &str) -> std::fmt::Result {
     writeln!(out, "# Sequences in a room\n")?;
-    writeln!(out, "`caustix compare {}{full}`, caustix {}.\n", study.scene_name, env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "`{command}`, caustix {}.\n", env!("CARGO_PKG_VERSION"))?;
     writeln!(
         out,
         "The experiment of S. Heinrich and A. Keller (1994), section 5, in a scene of our own: {} triangles, every photon \
@@ -362,11 +360,11 @@ pub fn deviations_csv(study: &RoomStudy) -> String {
 
 /// Writes `compare.csv`, `compare.md` and `deviations.csv` into a directory that exists: names of those written, and
 /// what went wrong with the others.
-pub fn write_files(study: &RoomStudy, directory: &Path) -> (Vec<String>, Vec<Diagnostic>) {
+pub fn write_files(study: &RoomStudy, command: &str, directory: &Path) -> (Vec<String>, Vec<Diagnostic>) {
     let (mut written, mut errors) = (Vec::new(), Vec::new());
     for (name, content) in [
         ("compare.csv", csv(study)),
-        ("compare.md", markdown(study)),
+        ("compare.md", markdown(study, command)),
         ("deviations.csv", deviations_csv(study)),
     ] {
         let result: Result<()> = write_atomically(directory.join(name), |file| {

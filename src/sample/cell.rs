@@ -59,6 +59,11 @@ impl Row {
         }
     }
 
+    /// F(dt) of the edge sums (1, 0) and (0, 1): that of any others is linear in them.
+    pub(super) fn masses(&self) -> [f64; 2] {
+        [(1.0, 0.0), (0.0, 1.0)].map(|edges| Marginal::new(self, edges, 1.0).mass_to(self.width).0)
+    }
+
     /// sin theta1.
     pub(super) fn sin(&self) -> f64 {
         self.sin
@@ -88,15 +93,15 @@ impl Column {
 impl Cell {
     /// A cell, or `None` where its flux is zero (or too small to be told from zero).
     pub fn new(row: &Row, row_index: u32, column_index: u32, corners: [f64; 4]) -> Option<Self> {
-        let cell = Self::of_positive_flux(row, row_index, column_index, corners);
+        let [a1, a2, b1, b2] = corners;
+        let (mass, _) = Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(row.width);
+        let cell = Self::of_mass(mass, row_index, column_index, corners);
         (cell.inverse_mass > 0.0 && cell.inverse_mass.is_finite()).then_some(cell)
     }
 
-    /// A cell that is known to have flux.
+    /// A cell whose F(dt) is known and positive.
     #[inline]
-    pub(super) fn of_positive_flux(row: &Row, row_index: u32, column_index: u32, corners: [f64; 4]) -> Self {
-        let [a1, a2, b1, b2] = corners;
-        let (mass, _) = Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(row.width);
+    pub(super) fn of_mass(mass: f64, row_index: u32, column_index: u32, corners: [f64; 4]) -> Self {
         Self { corners, inverse_mass: 1.0 / mass, row: row_index, column: column_index }
     }
 

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::cell::{Cell, Column, Row};
-use super::choose::{Reusable, TWO_TO_64, divide, integer_widths};
+use super::choose::{Reusable, Share, TWO_TO_64, integer_widths};
 use super::grid::GridPoint;
 use super::marginal::Polar;
 use super::rejection::{Reached, reach};
@@ -25,6 +25,8 @@ pub const MAX_NODES: usize = 1 << 22;
 #[derive(Debug, Clone)]
 pub struct CompactGrids {
     rows: Vec<Row>,
+    /// Of each row, F(dt) of the edge sums (1, 0) and (0, 1).
+    masses: Vec<[f64; 2]>,
     columns: Vec<Column>,
     /// `[slice][polar][azimuth]`, in units of the slice's largest.
     nodes: Vec<f32>,
@@ -75,6 +77,7 @@ impl CompactGrids {
         let columns: Vec<Column> = azimuth.windows(2).map(|w| Column::new(w[0], w[1])).collect();
         let guide_bits = (rows.len() * columns.len()).ilog2();
         Ok(Self {
+            masses: rows.iter().map(Row::masses).collect(),
             rows,
             columns,
             nodes: Vec::new(),
@@ -135,11 +138,9 @@ impl CompactGrids {
     /// Fluxes of the cells, in units of the largest node.
     fn fluxes(&self, nodes: &[f32]) -> Vec<f64> {
         let mut fluxes = Vec::with_capacity(self.cell_count());
-        for (i, row) in self.rows.iter().enumerate() {
+        for i in 0..self.rows.len() {
             for (j, column) in self.columns.iter().enumerate() {
-                let corners = self.corners(nodes, i, j);
-                let cell = Cell::new(row, i as u32, j as u32, corners);
-                fluxes.push(cell.map_or(0.0, |cell| cell.flux(column)));
+                fluxes.push(0.5 * column.width * self.mass(i, self.corners(nodes, i, j)));
             }
         }
         fluxes
@@ -211,8 +212,7 @@ impl CompactGrids {
         let (from, to) = (guide[slot] as usize, guide[slot + 1] as usize);
         // Cells of zero flux share their first fraction with the next one, so the last of equals is the owner.
         let cell = from + low[from..=to].partition_point(|l| *l <= bits) - 1;
-        let width = self.width(slice, cell);
-        u.renormalised(divide(bits - low[cell], width), width as f64 / TWO_TO_64);
+        u.take(Share { low: low[cell], width: self.width(slice, cell) });
         cell
     }
 
@@ -284,8 +284,8 @@ impl CompactGrids {
             return Some((remainder, u2));
         }
         let at = i * self.columns.len() + j;
-        let inside = (u128::from(remainder) * u128::from(self.width(slice, at))) >> 64;
-        Some((self.low_of(slice)[at] + inside as u64, u2))
+        let share = Share { low: self.low_of(slice)[at], width: self.width(slice, at) };
+        Some((share.invert(remainder), u2))
     }
 
     /// The value of a slice at (theta, phi), bilinear; 0 outside the grid.
@@ -394,6 +394,7 @@ impl CompactGrids {
     /// Bytes held.
     pub fn memory_bytes(&self) -> usize {
         self.rows.capacity() * size_of::<Row>()
+            + self.masses.capacity() * size_of::<[f64; 2]>()
             + self.columns.capacity() * size_of::<Column>()
             + self.nodes.capacity() * size_of::<f32>()
             + self.low.capacity() * size_of::<u64>()
@@ -428,11 +429,18 @@ impl CompactGrids {
         [near[0], near[1], far[0], far[1]].map(f64::from)
     }
 
+    /// F(dt) of a cell.
+    #[inline]
+    fn mass(&self, row: usize, [a1, a2, b1, b2]: [f64; 4]) -> f64 {
+        let [near, far] = self.masses[row];
+        (a1 + a2) * near + (b1 + b2) * far
+    }
+
     /// A cell of positive flux.
     #[inline]
     fn cell(&self, slice: usize, row: usize, column: usize) -> Cell {
         let corners = self.corners(self.nodes_of(slice), row, column);
-        Cell::of_positive_flux(&self.rows[row], row as u32, column as u32, corners)
+        Cell::of_mass(self.mass(row, corners), row as u32, column as u32, corners)
     }
 }
 
@@ -442,7 +450,7 @@ fn check_angles(polar: &[f64], azimuth: &[f64]) -> Result<()> {
         let found = format!("{} polar and {} azimuth angles", polar.len(), azimuth.len());
         return fail(found, "at least two of each");
     }
-    if !polar.len().checked_mul(azimuth.len()).is_some_and(|n| n <= MAX_NODES) {
+    if polar.len().checked_mul(azimuth.len()).is_none_or(|n| n > MAX_NODES) {
         let found = format!("{} x {} angles", polar.len(), azimuth.len());
         return fail(found, "at most 2^22 pairs");
     }

@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use crate::emitter::WeightedEmitters;
+use crate::emitter::{Emitter, WeightedEmitters};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
@@ -54,7 +54,10 @@ impl ReferencePlan {
             ));
         }
         // A seed that no run has, the same for the same runs.
-        let seed = seeds.iter().fold(0x7265_6665_7265_6e63, |seed: u64, s| seed.max(s.wrapping_add(1)));
+        let mut seed = 0x7265_6665_7265_6e63u64;
+        while seeds.contains(&seed) {
+            seed = seed.wrapping_add(1);
+        }
         Ok(Self { sequence: SEQUENCE, seed, photons_per_replicate })
     }
 
@@ -70,9 +73,22 @@ impl ReferencePlan {
     }
 }
 
-/// Emission map of references, in words.
-pub const EMISSION_MAP: &str =
-    "directions uniform in solid angle (over the cells that emit), weighted by the intensity";
+/// Most photons of a reference.
+pub const MOST_REFERENCE_PHOTONS: u64 = MOST_PHOTONS_PER_REPLICATE * REPLICATES as u64;
+
+/// Emission map of the reference of a scene, in words: only tables have two.
+pub fn emission_map(scene: &Scene) -> &'static str {
+    let is_table = |e: &Emitter| matches!(e, Emitter::Photometric(_));
+    let emitters = scene.emitters.as_slice();
+    if emitters.iter().all(is_table) {
+        "directions uniform in solid angle (over the cells that emit), weighted by the intensity"
+    } else if emitters.iter().any(is_table) {
+        "of tables: directions uniform in solid angle, weighted by the intensity; of other emitters: the map under test"
+    } else {
+        "the map under test (no emitter has a table)"
+    }
+}
+
 /// Sequence of references.
 const SEQUENCE: Sequence = Sequence::HaltonRotation;
 

@@ -102,7 +102,7 @@ impl Measure<'_> {
     }
 }
 
-fn processor_time() -> Result<ProcessTime> {
+pub(super) fn processor_time() -> Result<ProcessTime> {
     ProcessTime::try_now().map_err(|e| {
         Diagnostic::new(
             Kind::Io,

@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use super::arrival::Arrival;
 use super::layer::{Layer, Mix};
 use crate::math::solve::Solver;
-use crate::sample::choose::{Reusable, invert_event};
+use crate::sample::choose::{Reusable, Share, TWO_TO_64};
 use crate::sample::compact::CompactGrids;
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::sample::grid::GridPoint;
@@ -21,11 +21,66 @@ pub(super) struct Lobes<'a> {
 }
 
 /// What can scatter a photon: a slice, for one channel where there is colour.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Branch {
-    lobe: usize,
-    slice: usize,
     weight: f64,
+    slice: u32,
+    lobe: u32,
+}
+
+/// Four slices for each of two lobes and three channels.
+const MOST_BRANCHES: usize = 24;
+
+/// Every branch of positive weight, in a fixed order.
+struct Branches {
+    list: [Branch; MOST_BRANCHES],
+    length: usize,
+    total: f64,
+}
+
+impl Branches {
+    #[inline]
+    fn as_slice(&self) -> &[Branch] {
+        &self.list[..self.length]
+    }
+
+    #[inline]
+    fn add(&mut self, lobe: usize, slice: usize, weight: f64) {
+        if weight > 0.0 {
+            self.list[self.length] = Branch { weight, slice: slice as u32, lobe: lobe as u32 };
+            self.length += 1;
+            self.total += weight;
+        }
+    }
+
+    /// The fractions of each branch in turn, until one satisfies: (branch, its share). The last one owns what is left.
+    #[inline]
+    fn find(&self, mut is_it: impl FnMut(Branch, Share) -> bool) -> Option<(Branch, Share)> {
+        let (last, others) = self.as_slice().split_last()?;
+        let scale = TWO_TO_64 / self.total;
+        let (mut sum, mut low) = (0.0, 0);
+        for branch in others {
+            sum += branch.weight;
+            // One too rare for its own fraction has none.
+            let high = (sum * scale) as u64;
+            let share = Share { low, width: high - low };
+            if high > low && is_it(*branch, share) {
+                return Some((*branch, share));
+            }
+            low = high;
+        }
+        let share = Share { low, width: low.wrapping_neg() };
+        is_it(*last, share).then_some((*last, share))
+    }
+
+    /// One branch by weight, as one event on `u`.
+    #[inline]
+    fn choose(&self, u: &mut Reusable) -> Option<Branch> {
+        let bits = u.bits();
+        let (branch, share) = self.find(|_, share| share.width == 0 || bits - share.low < share.width)?;
+        u.take(share);
+        Some(branch)
+    }
 }
 
 /// A photon on its way.
@@ -67,37 +122,43 @@ impl<'a> Lobes<'a> {
         self.arrival.axes(layer.frame, layer.quantity)
     }
 
-    /// Every branch of positive weight, in a fixed order. `shares` are those of the channels; `None` where all are grey.
+    /// Every branch. `shares` are those of the channels; `None` where all are grey.
     #[inline]
-    fn branches(&self, shares: Option<[f64; 3]>) -> impl Iterator<Item = Branch> + '_ {
-        let channels = if shares.is_some() { 3 } else { 1 };
-        let shares = shares.unwrap_or([1.0; 3]);
-        (0..2).flat_map(move |lobe| {
-            let parts = self.lobes[lobe].iter().flat_map(move |(layer, mix)| {
+    fn branches(&self, shares: Option<[f64; 3]>) -> Branches {
+        let mut all = Branches { list: [Branch::default(); MOST_BRANCHES], length: 0, total: 0.0 };
+        for (lobe, found) in self.lobes.iter().enumerate() {
+            let Some((layer, mix)) = found else { continue };
+            let mut add = |channel: usize, share: f64| {
+                for (incidence, part) in mix.parts() {
+                    let slice = layer.slice(channel, incidence);
+                    all.add(lobe, slice, share * part * layer.grids.integral(slice));
+                }
+            };
+            match shares {
+                None => add(0, 1.0),
                 // A grey lobe beside a coloured one is the same for all channels: one branch with all shares.
-                let grey = layer.channels == 1 && channels == 3;
-                let sum = shares[0] + shares[1] + shares[2];
-                (0..if grey { 1 } else { channels }).flat_map(move |channel| {
-                    let share = if grey { sum } else { shares[channel] };
-                    mix.parts().map(move |(incidence, part)| {
-                        let slice = layer.slice(channel, incidence);
-                        Branch { lobe, slice, weight: share * part * layer.grids.integral(slice) }
-                    })
-                })
-            });
-            parts.filter(|branch| branch.weight > 0.0)
-        })
+                Some(shares) if layer.channels == 1 => add(0, shares[0] + shares[1] + shares[2]),
+                Some(shares) => (0..3).for_each(|channel| add(channel, shares[channel])),
+            }
+        }
+        all
     }
 
     /// A direction of light that is scattered; `None` where nothing is.
     #[inline]
     pub fn sample<C: Chooser>(&self, shares: Option<[f64; 3]>, chooser: &mut C) -> Option<Left> {
+        let branches = self.branches(shares);
         let mut u = chooser.reusable(Purpose::Scatter);
-        let branch = self.choose(shares, &mut u, chooser)?;
-        let (layer, mix) = self.lobes[branch.lobe].as_ref()?;
+        let branch = match branches.as_slice() {
+            [] => return None,
+            [only] => *only,
+            _ => chooser.choose_by(&mut u, Purpose::Scatter, |u| branches.choose(u))?,
+        };
+        let (layer, mix) = self.lobes[branch.lobe as usize].as_ref()?;
+        let slice = branch.slice as usize;
         let point = match chooser.sampling() {
-            Sampling::Inverse(solver) => invert(&layer.grids, branch.slice, u, solver, chooser),
-            Sampling::Rejection(rejection) => reject(&layer.grids, branch.slice, u, rejection, chooser),
+            Sampling::Inverse(solver) => invert(&layer.grids, slice, u, solver, chooser),
+            Sampling::Rejection(rejection) => reject(&layer.grids, slice, u, rejection, chooser),
         };
         let wo = self.axes(layer) * point.direction;
         let values = if shares.is_some() {
@@ -110,72 +171,28 @@ impl<'a> Lobes<'a> {
         Some(Left { wo, quantity: layer.quantity, below_horizon, values })
     }
 
-    /// One branch by weight, as one event on `u`; a single one costs nothing.
-    #[inline]
-    fn choose<C: Chooser>(
-        &self,
-        shares: Option<[f64; 3]>,
-        u: &mut Reusable,
-        chooser: &mut C,
-    ) -> Option<Branch> {
-        let (mut count, mut total) = (0, 0.0);
-        let mut only = None;
-        for branch in self.branches(shares) {
-            (count, total) = (count + 1, total + branch.weight);
-            only = Some(branch);
-        }
-        if count < 2 {
-            return only;
-        }
-        let last = only;
-        chooser.choose_by(u, Purpose::Scatter, |u| {
-            let (mut left, mut sum) = (count, total);
-            for branch in self.branches(shares) {
-                left -= 1;
-                // Rounding of the sum can only make the rest, of no weight beside this one, unreachable.
-                if left == 0 || branch.weight >= sum || u.happens(branch.weight / sum) {
-                    return Some(branch);
-                }
-                sum -= branch.weight;
-            }
-            last
-        })
-    }
-
     /// The coordinates of every branch that gives wo.
     pub fn invert(&self, shares: Option<[f64; 3]>, quantity: Quantity, wo: DVec3) -> Vec<(u64, f64)> {
-        let branches: Vec<Branch> = self.branches(shares).collect();
         let mut found = Vec::new();
-        // Probabilities of the events that were refused before this branch.
-        let mut refused: Vec<f64> = Vec::new();
-        let mut sum: f64 = branches.iter().map(|b| b.weight).sum();
-        for (k, branch) in branches.iter().enumerate() {
-            let is_last = k + 1 == branches.len() || branch.weight >= sum;
-            let probability = branch.weight / sum;
-            if let Some((layer, _)) = self.lobes[branch.lobe].as_ref().filter(|(l, _)| l.quantity == quantity)
+        let _ = self.branches(shares).find(|branch, share| {
+            if let Some((layer, _)) =
+                self.lobes[branch.lobe as usize].as_ref().filter(|(l, _)| l.quantity == quantity)
             {
                 let (theta, phi) = angles(&self.axes(layer), wo);
-                if let Some((inside, u2)) = layer.grids.invert(branch.slice, theta, phi) {
-                    let own = if is_last { inside } else { invert_event(probability, true, inside) };
-                    let u1 = refused.iter().rev().fold(own, |u, p| invert_event(*p, false, u));
-                    found.push((u1, u2));
-                }
+                let inside = layer.grids.invert(branch.slice as usize, theta, phi);
+                found.extend(inside.map(|(remainder, u2)| (share.invert(remainder), u2)));
             }
-            if is_last {
-                break;
-            }
-            refused.push(probability);
-            sum -= branch.weight;
-        }
+            false // All of them.
+        });
         found
     }
 
     /// Proposals of white light, times the chance of being scattered: (inside cells, against a slice's largest).
     pub fn proposals(&self, shares: Option<[f64; 3]>) -> (f64, f64) {
         let (mut cells, mut table) = (0.0, 0.0);
-        for branch in self.branches(shares) {
-            if let Some((layer, _)) = &self.lobes[branch.lobe] {
-                let (in_cell, in_table) = layer.grids.proposals(branch.slice);
+        for branch in self.branches(shares).as_slice() {
+            if let Some((layer, _)) = &self.lobes[branch.lobe as usize] {
+                let (in_cell, in_table) = layer.grids.proposals(branch.slice as usize);
                 cells += branch.weight * in_cell;
                 table += branch.weight * in_table;
             }

@@ -3,7 +3,6 @@
 use std::f64::consts::PI;
 use std::fmt;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +12,7 @@ use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::{Points, Sequence};
+use crate::study::runs::processor_time;
 use crate::tally::WeightedReceivers;
 use crate::transport::parallel::{How, Traced, trace_range};
 
@@ -100,7 +100,7 @@ pub fn measure(
         task.photons,
         arrivals(scene, reflections),
     )?;
-    let started = Instant::now();
+    let started = processor_time()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
     let traced = trace(scene, &points, task, reflections, how, &tally);
     if !traced.complete {
@@ -119,7 +119,7 @@ pub fn measure(
             .collect(),
         escaped: traced.ledger.escaped,
         coordinates: (traced.census.dimension_mean(), traced.census.dimension_max),
-        trace_s: started.elapsed().as_secs_f64(),
+        trace_s: processor_time()?.duration_since(started).as_secs_f64(),
     })
 }
 

@@ -85,7 +85,8 @@ pub struct Row {
 impl Row {
     /// Whether the reference is not good enough for this error.
     pub fn is_limited(&self) -> bool {
-        self.errors.nrms < LIMITED * self.reference_nrms
+        // An unknown error of the reference limits everything.
+        self.reference_nrms.is_nan() || self.errors.nrms < LIMITED * self.reference_nrms
     }
 }
 
@@ -208,7 +209,7 @@ impl RoomStudy {
         };
         let sum = sums(|e| e);
         let own = nrms_of_mean(&sum, &sums(|e| e * e), &self.areas_m2, masters.len() as u32);
-        (sum.iter().map(|e| e / n).collect(), own.unwrap_or(0.0))
+        (sum.iter().map(|e| e / n).collect(), own.unwrap_or(f64::NAN))
     }
 
     fn photons_per_s(&self, sequence: usize) -> f64 {
