@@ -98,7 +98,7 @@ mod tests {
                         assert!((direction.x - 1.5 * angle.sin()).abs() < 1e-12);
                     }
                 }
-                Outcome::Absorbed => panic!("glass does not absorb"),
+                Outcome::Absorbed | Outcome::BelowHorizon => panic!("glass does not absorb"),
             }
         }
     }
@@ -133,7 +133,7 @@ mod tests {
                         assert!((direction.length() - 1.0).abs() < 1e-14);
                         corrected += u32::from(c);
                     }
-                    Outcome::Absorbed => panic!("glass does not absorb"),
+                    Outcome::Absorbed | Outcome::BelowHorizon => panic!("glass does not absorb"),
                 }
             }
         }

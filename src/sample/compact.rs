@@ -450,7 +450,7 @@ fn check_angles(polar: &[f64], azimuth: &[f64]) -> Result<()> {
         let found = format!("{} polar and {} azimuth angles", polar.len(), azimuth.len());
         return fail(found, "at least two of each");
     }
-    if !polar.len().checked_mul(azimuth.len()).is_some_and(|n| n <= MAX_NODES) {
+    if polar.len().checked_mul(azimuth.len()).is_none_or(|n| n > MAX_NODES) {
         let found = format!("{} x {} angles", polar.len(), azimuth.len());
         return fail(found, "at most 2^22 pairs");
     }
