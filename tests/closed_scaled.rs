@@ -6,6 +6,8 @@
 
 mod closed_support;
 
+use std::path::PathBuf;
+
 use caustix::bsdf::Grey;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scene::Scene;
@@ -157,7 +159,7 @@ fn cells(scene: &Scene, path: &Path) -> Vec<(usize, u32, u32)> {
 #[test]
 fn powers_of_two_change_no_hit() {
     let points = OwenPoints::new(1, 0);
-    for file in scene_files() {
+    for file in continuous_scenes() {
         let original = scaled(description(&file), 1.0);
         for s in [1024.0, 1.0 / 1024.0] {
             let other = scaled(description(&file), s);
@@ -194,13 +196,23 @@ fn changes(a: &Scene, b: &Scene, n: u64, back: impl Fn(DVec3) -> DVec3 + Sync) -
         .reduce(|| (0, 0.0), |x, y| (x.0 + y.0, x.1.max(y.1)))
 }
 
+/// Scenes in which a change in the last digit of a direction changes the rest of a path as little. A table of scattering
+/// chooses slice and cell by thresholds that depend on the incidence, and what is left of the coordinate is divided by the
+/// probability of a rare cell: rounding grows by its inverse.
+fn continuous_scenes() -> Vec<PathBuf> {
+    let mut files = scene_files();
+    files.retain(|file| !std::fs::read_to_string(file).unwrap().contains("type = \"tabulated\""));
+    assert!(files.len() >= 7);
+    files
+}
+
 /// Arrivals in scenes of a few metres, known to 2e-16 of that where they start; optics magnify it.
 const SCALED_APART_M: f64 = 1e-10;
 
 #[test]
 fn other_scales_change_at_most_one_photon_in_a_million() {
     let (mut photons, mut changed) = (0, 0);
-    for file in scene_files() {
+    for file in continuous_scenes() {
         let original = scaled(description(&file), 1.0);
         for s in [1e3, 1e-3] {
             let other = scaled(description(&file), s);
@@ -230,7 +242,7 @@ const SHIFTED_APART_M: f64 = 1e-9;
 fn a_kilometre_away_arrivals_agree_to_a_nanometre() {
     let by = DVec3::new(1000.0, -1000.0, 1000.0);
     let (mut photons, mut changed) = (0, 0);
-    for file in scene_files() {
+    for file in continuous_scenes() {
         let (original, other) = (scaled(description(&file), 1.0), shifted(description(&file), by));
         let n = 1 << 17;
         let (k, apart) = changes(&original, &other, n, |p| p - by);

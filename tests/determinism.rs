@@ -93,6 +93,8 @@ fn reordered(text: &str, order: impl Fn(&mut Vec<String>)) -> String {
     order(&mut surfaces);
     let text = others.concat() + &surfaces.concat();
     text.replace("../ies/", &format!("{}/ies/", project().display()))
+        .replace("../brdf_tables/", &format!("{}/brdf_tables/", project().display()))
+        .replace("\"opal_cover.obj\"", &format!("\"{}/scenes/opal_cover.obj\"", project().display()))
         .replace("\"prism.obj\"", &format!("\"{}/scenes/prism.obj\"", project().display()))
         .replace("\"room/", &format!("\"{}/scenes/room/", project().display()))
 }
