@@ -263,3 +263,28 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
     // A facet across the reference still has some tangent.
     assert!([DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z].into_iter().any(|d| lit(&along_x, DVec3::X, true, d)));
 }
+
+#[test]
+fn the_account_of_coordinates_counts_what_tables_draw() {
+    use caustix::run::{Algorithm, Plan, Settings, trace};
+    use caustix::scattering::{Frame, Quantity};
+    use caustix::study::account::Events;
+    let angles = || [vec![0.0, 40.0, 80.0], vec![0.0], steps(0.0, 90.0, 6.0), steps(0.0, 360.0, 30.0)];
+    let glossy = lobe((Quantity::Reflection, Frame::Specular), angles(), 1, |_, _, theta, polar, _| {
+        0.3 * (1.0 + theta / 90.0) * (-polar / 25.0).exp()
+    });
+    let table = ScatterTable::new("glossy", vec![glossy], vec![]).unwrap();
+    let scene = room(tabulated(&table, &Options::default()), diffuser(0.6, 5.0, Energy::Refuse));
+    let events = Events::count(&scene);
+    assert!(events.tables > 0.0, "no photon met a table");
+    for variant in ["mc", "mc:table", "qmc-inverse", "qmc-inverse-reuse"] {
+        let algorithm = Algorithm::parse(variant).unwrap();
+        let settings = Settings { photons: Some(1 << 16), replicates: Some(16), seed: 7, algorithm };
+        let interrupt = std::sync::atomic::AtomicBool::new(false);
+        let census = trace(&scene, &Plan::new(&settings).unwrap(), &interrupt, &|_| {}).unwrap().census;
+        let (mean, account) = (census.dimension_mean(), events.account(&scene, algorithm).by_event);
+        println!("{variant}: {mean:.4} coordinates a photon, account {account:.4}");
+        // Two means over 2^16 photons; the spread of either is less than its mean.
+        assert!((mean / account - 1.0).abs() < 0.02, "{variant}: {mean} {account}");
+    }
+}
