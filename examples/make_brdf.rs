@@ -86,7 +86,7 @@ fn phong() -> Table {
         symmetry: "plane",
         theta_i: vec![0.0, 15.0, 30.0, 45.0, 55.0, 65.0, 75.0, 80.0, 85.0, 89.0],
         phi_i: vec![],
-        polar: steps(0.0, 1.5, 41),
+        polar: [steps(0.0, 1.5, 41), vec![75.0, 90.0]].concat(),
         azimuth: steps(0.0, 7.5, 25),
         lobes: vec![reflection(|wi, wo| {
             let alpha = wi[2] * wo[2] - wi[0] * wo[0] - wi[1] * wo[1];
@@ -105,7 +105,7 @@ fn aluminium() -> Table {
         symmetry: "plane",
         theta_i: [steps(0.0, 10.0, 6), vec![55.0, 60.0, 65.0, 70.0, 75.0, 80.0, 84.0, 87.0, 89.0]].concat(),
         phi_i: vec![],
-        polar: [steps(0.0, 1.5, 21), steps(33.0, 4.0, 6), steps(60.0, 10.0, 12)].concat(),
+        polar: [steps(0.0, 1.5, 21), steps(33.0, 4.0, 6), steps(60.0, 10.0, 13)].concat(),
         azimuth: steps(0.0, 7.5, 25),
         lobes: vec![reflection(|wi, wo| conductor(wi, wo, 0.25, 0.25))],
     }
@@ -144,7 +144,7 @@ fn rough_glass() -> Table {
         symmetry: "plane",
         theta_i: vec![0.0, 8.0, 16.0, 24.0, 32.0, 40.0, 48.0, 57.0, 66.0, 75.0, 84.0],
         phi_i: vec![],
-        polar: [steps(0.0, 1.5, 11), steps(17.5, 2.5, 18), steps(65.0, 5.0, 6), steps(100.0, 10.0, 8)]
+        polar: [steps(0.0, 1.5, 11), steps(17.5, 2.5, 18), steps(65.0, 5.0, 6), steps(100.0, 10.0, 9)]
             .concat(),
         azimuth: steps(0.0, 9.0, 21),
         lobes: vec![
@@ -179,7 +179,7 @@ fn satin_pane() -> Table {
         symmetry: "plane",
         theta_i: vec![0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 68.0, 75.0, 80.0, 85.0, 88.0],
         phi_i: vec![],
-        polar: [steps(0.0, 1.5, 17), steps(28.0, 4.0, 6), steps(55.0, 10.0, 12)].concat(),
+        polar: [steps(0.0, 1.5, 17), steps(28.0, 4.0, 6), steps(55.0, 10.0, 13), vec![180.0]].concat(),
         azimuth: steps(0.0, 6.0, 31),
         lobes: vec![
             reflection(|wi, wo| {

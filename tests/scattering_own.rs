@@ -126,7 +126,7 @@ fn stated_at(table: &make_brdf::Table) -> Vec<(f64, f64)> {
 fn every_table_reads_without_a_warning_and_keeps_energy() {
     for table in make_brdf::tables() {
         let file = read(table.file);
-        assert!(file.warnings.iter().all(|w| w.found().contains("ends at")), "{:?}", file.warnings);
+        assert!(file.warnings.is_empty(), "{:?}", file.warnings);
         for front in [true, false] {
             let lobes: Vec<_> = [Quantity::Reflection, Quantity::Transmission]
                 .into_iter()
