@@ -26,7 +26,7 @@ pub fn node_cosine(frame: Frame, theta_i_deg: f64, polar_deg: f64, azimuth_deg: 
     }
 }
 
-/// g = f cos(theta_o) at the nodes of a slice, 1/sr, index [polar][azimuth]; zero below the horizon.
+/// g = f cos(theta_o) at the nodes of a slice, 1/sr, index `[polar][azimuth]`; zero below the horizon.
 pub fn node_values(lobe: &Lobe, channel: usize, phi_i: usize, theta_i: usize) -> Vec<f64> {
     let azimuths = lobe.azimuth_deg.len();
     let slice = lobe.slice(channel, phi_i, theta_i);

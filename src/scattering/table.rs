@@ -75,9 +75,9 @@ pub struct LobeData {
     pub azimuth_deg: Vec<f64>,
     /// 1, or 3 for linear sRGB.
     pub channels: usize,
-    /// f in 1/sr, index [channel][phi_i][theta_i][polar][azimuth].
+    /// f in 1/sr, index `[channel][phi_i][theta_i][polar][azimuth]`.
     pub values: Vec<f32>,
-    /// Total integrated scatter as the file states it, index [phi_i][theta_i]; empty where it states none.
+    /// Total integrated scatter as the file states it, index `[phi_i][theta_i]`; empty where it states none.
     pub declared_tis: Vec<f64>,
 }
 
@@ -157,7 +157,7 @@ impl Lobe {
         self.phi_i_deg.len() == 1
     }
 
-    /// The values of one channel at one incidence, index [polar][azimuth].
+    /// The values of one channel at one incidence, index `[polar][azimuth]`.
     pub fn slice(&self, channel: usize, phi_i: usize, theta_i: usize) -> &[f32] {
         let [_, phis, thetas, polar, azimuth] = self.counts();
         let nodes = polar * azimuth;
