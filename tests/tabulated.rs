@@ -120,62 +120,6 @@ fn values_at_the_nodes_are_those_of_the_table() {
     }
 }
 
-/// Between the table's angles g is the linear mixture of its slices at the same angles of the lobe's own frame; before the first
-/// and beyond the last theta_i it is that slice.
-#[test]
-fn incident_angles_mix_linearly_where_the_lobe_stands_still() {
-    for case in cases() {
-        let t = tabulated(&case);
-        for data in &case.lobes {
-            let g = |theta_i: f64, phi_i: f64, theta: f64, phi: f64| {
-                let wi = incidence(theta_i, phi_i);
-                let wo = direction(data.frame, data.quantity, wi, theta, phi);
-                t.eval_cos(true, wi, wo, data.quantity)
-            };
-            let thetas = &data.theta_i_deg;
-            let (first, last) = (thetas[0].max(1e-3), thetas[thetas.len() - 1]);
-            let phis = if data.phi_i_deg.len() == 1 { &[10.0, 47.0][..] } else { &data.phi_i_deg[..] };
-            let mut places = Vec::new();
-            for pair in thetas.windows(2) {
-                for t in [0.25, 0.6] {
-                    let near = pair[0].max(1e-3); // At normal incidence itself the plane of incidence is another one.
-                    places.push((near + t * (pair[1] - near), near, pair[1], t));
-                }
-            }
-            places.push((0.5 * first, first, first, 0.0));
-            places.push((0.5 * (last + 90.0), last, last, 0.0));
-            for phi_pair in phis.windows(2) {
-                for (middle, low, high, along) in &places {
-                    for k in 0..40u64 {
-                        let u = |j: u64| to_unit_f64(mix64(1 + 8 * k + j));
-                        let theta = data.polar_deg[data.polar_deg.len() - 1].to_radians() * u(0);
-                        let phi = (u(1) - 0.5) * 6.28;
-                        let across = if data.phi_i_deg.len() == 1 { 0.0 } else { u(2) };
-                        let phi_i = phi_pair[0] + across * (phi_pair[1] - phi_pair[0]);
-                        let corners = [
-                            (g(*low, phi_pair[0], theta, phi), (1.0 - along) * (1.0 - across)),
-                            (g(*high, phi_pair[0], theta, phi), along * (1.0 - across)),
-                            (g(*low, phi_pair[1], theta, phi), (1.0 - along) * across),
-                            (g(*high, phi_pair[1], theta, phi), along * across),
-                        ];
-                        let found = g(*middle, phi_i, theta, phi);
-                        for channel in 0..3 {
-                            let expected: f64 = corners.iter().map(|(g, w)| w * g[channel]).sum();
-                            let error = (found[channel] - expected).abs();
-                            // 1e-3 degrees stand for 0 where the table has that angle.
-                            assert!(
-                                error <= 1e-4 * expected + 1e-13,
-                                "{}: {middle} {phi_i}: {found:?} {expected}",
-                                case.name
-                            );
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
 #[test]
 fn albedo_is_the_integral_of_the_value_and_the_density_integrates_to_one() {
     for case in cases() {
