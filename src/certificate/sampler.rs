@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 
 use super::{Draw, PointKind};
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::run::Algorithm;
 use crate::run::tracer::{PointSet, UsePoints};
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sample::grid::{Grid, GridPoint};
 use crate::sample::method::Sampling;
-use crate::sequence::{Points, Sequence, to_unit_f64};
+use crate::sequence::{Points, Sequence};
 
 /// Draws that are timed together and then handed over.
 const BLOCK: usize = 1 << 12;
@@ -76,13 +76,7 @@ pub fn sample(
 ) -> Result<Effort> {
     let points = PointSet { sequence: algorithm.sequence, seed, replicate, number };
     let sampling = algorithm.sampling();
-    if sampling.skips_points() && algorithm.sequence.needs_number() {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            format!("variant {}", algorithm.name()),
-            "a sequence that goes on beyond N points, for rejection that retries with the next one",
-        ));
-    }
+    algorithm.check_skipping(true)?;
     points.provide(Run { grid, sampling, reuse: algorithm.variant.reuses(), number, sink })
 }
 
@@ -107,7 +101,8 @@ impl<S: FnMut(&[Sampled]) -> bool> UsePoints for Run<'_, S> {
             while block.len() < wanted {
                 let mut coordinates = Coordinates::new(points, effort.points, self.reuse);
                 effort.points += 1;
-                if let Some(point) = draw(self.grid, self.sampling, &mut coordinates) {
+                let u = coordinates.draw_reusable(Purpose::Emission);
+                if let Some(point) = self.grid.draw(self.sampling, u, &mut coordinates) {
                     let GridPoint { theta, phi, direction, .. } = point;
                     let coordinates = coordinates.drawn();
                     block.push(Sampled {
@@ -123,25 +118,6 @@ impl<S: FnMut(&[Sampled]) -> bool> UsePoints for Run<'_, S> {
             }
         }
         effort
-    }
-}
-
-/// The point of the table for one photon: what `emitter::Photometric` does, with the angles kept.
-#[inline]
-fn draw<P: Points>(
-    grid: &Grid,
-    sampling: Sampling,
-    coordinates: &mut Coordinates<'_, P>,
-) -> Option<GridPoint> {
-    let mut u = coordinates.draw_reusable(Purpose::Emission);
-    match sampling {
-        Sampling::Inverse(solver) => {
-            let cell = coordinates.choose(grid.choice(), &mut u, Purpose::Emission);
-            let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
-            let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-            Some(grid.place(cell, u_theta, u_phi, solver))
-        }
-        Sampling::Rejection(rejection) => grid.reject(u, coordinates, rejection),
     }
 }
 

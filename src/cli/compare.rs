@@ -168,9 +168,12 @@ impl Asked {
         let seeds = seeds(args)?;
         let reference_photons = count("--reference-photons", args.reference_photons.as_ref())?
             .unwrap_or(photons.saturating_mul(REFERENCE_FACTOR).min(MOST_REFERENCE_PHOTONS));
+        let algorithms = algorithms(args)?;
+        // Before the reference, not after: it takes longest.
+        algorithms.iter().try_for_each(|a| a.check_skipping(scene.emitters.is_single()))?;
         Ok(Self {
             grids,
-            algorithms: algorithms(args)?,
+            algorithms,
             ladder: ladder(from, photons),
             photons,
             reference: ReferencePlan::new(reference_photons, &seeds)?,

@@ -60,8 +60,24 @@ impl Emitter {
         }
     }
 
-    /// A photon's start; `u` is the coordinate that chose the emitter, renormalised. `None` where this point of the sequence
-    /// gives no photon, which only rejection knows.
+    /// A photon's start by inverse functions, tables by this solver; `u` is the coordinate that chose the emitter, renormalised.
+    #[inline]
+    pub fn emit<P: Points>(
+        &self,
+        u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+        solver: Solver,
+    ) -> Emission {
+        match self {
+            Self::Photometric(e) => e.emit(u, coordinates, solver),
+            Self::Isotropic(e) => e.emit(u, coordinates),
+            Self::Collimated(e) => e.emit(u, coordinates),
+            Self::Panel(e) => e.emit(u, coordinates),
+        }
+    }
+
+    /// The same by a given way of sampling tables. `None` where this point of the sequence gives no photon, which only
+    /// rejection knows.
     #[inline]
     pub fn emit_by<P: Points>(
         &self,
@@ -70,13 +86,10 @@ impl Emitter {
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
         match (self, sampling) {
-            (Self::Photometric(e), Sampling::Inverse(solver)) => Some(e.emit(u, coordinates, solver)),
-            (Self::Photometric(e), Sampling::Rejection(rejection)) => {
-                e.emit_by_rejection(u, coordinates, rejection)
-            }
-            (Self::Isotropic(e), _) => Some(e.emit(u, coordinates)),
-            (Self::Collimated(e), _) => Some(e.emit(u, coordinates)),
-            (Self::Panel(e), _) => Some(e.emit(u, coordinates)),
+            (_, Sampling::Inverse(solver)) => Some(self.emit(u, coordinates, solver)),
+            (Self::Photometric(e), Sampling::Rejection(_)) => e.emit_by(sampling, u, coordinates),
+            // Nothing else has a table: there is nothing to reject, and no equation to solve.
+            (_, Sampling::Rejection(_)) => Some(self.emit(u, coordinates, Solver::DEFAULT)),
         }
     }
 
@@ -154,13 +167,7 @@ impl Emitters {
     pub fn emit<P: Points>(&self, coordinates: &mut Coordinates<'_, P>) -> (usize, Emission) {
         let mut u = coordinates.draw_reusable(Purpose::Emission);
         let which = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
-        let emission = match &self.emitters[which] {
-            Emitter::Photometric(e) => e.emit(u, coordinates, Solver::DEFAULT),
-            Emitter::Isotropic(e) => e.emit(u, coordinates),
-            Emitter::Collimated(e) => e.emit(u, coordinates),
-            Emitter::Panel(e) => e.emit(u, coordinates),
-        };
-        (which, emission)
+        (which, self.emitters[which].emit(u, coordinates, Solver::DEFAULT))
     }
 
     /// The same by a given way of sampling tables; `None` where this point of the sequence gives no photon.
@@ -202,10 +209,7 @@ impl<'e> WeightedEmitters<'e> {
         let which = coordinates.choose(&self.emitters.choice, &mut u, Purpose::Emission);
         let (emission, weight) = match (&self.emitters.emitters[which], &self.maps[which]) {
             (Emitter::Photometric(e), Some(map)) => e.emit_weighted(map, u, coordinates),
-            (Emitter::Photometric(e), None) => (e.emit(u, coordinates, Solver::DEFAULT), 1.0),
-            (Emitter::Isotropic(e), _) => (e.emit(u, coordinates), 1.0),
-            (Emitter::Collimated(e), _) => (e.emit(u, coordinates), 1.0),
-            (Emitter::Panel(e), _) => (e.emit(u, coordinates), 1.0),
+            (emitter, _) => (emitter.emit(u, coordinates, Solver::DEFAULT), 1.0),
         };
         (which, emission, weight)
     }

@@ -20,11 +20,11 @@ use crate::math::solve::Solver;
 use crate::photometry::Photometry;
 use crate::photometry::web::PhotometricType;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
-use crate::sample::grid::Grid;
-use crate::sample::method::Rejection;
+use crate::sample::coordinates::Coordinates;
+use crate::sample::grid::{Grid, GridPoint};
+use crate::sample::method::Sampling;
 use crate::sample::rejection::UniformMap;
-use crate::sequence::{Points, to_unit_f64};
+use crate::sequence::Points;
 
 /// A photometric point emitter.
 #[derive(Debug, Clone)]
@@ -112,26 +112,22 @@ impl Photometric {
     #[inline]
     pub fn emit<P: Points>(
         &self,
-        mut u: Reusable,
+        u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
         solver: Solver,
     ) -> Emission {
-        let cell = coordinates.choose(self.grid.choice(), &mut u, Purpose::Emission);
-        let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
-        let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
-        let point = self.grid.place(cell, u_theta, u_phi, solver);
-        Emission { origin: self.position, direction: self.axes * point.direction }
+        self.start(self.grid.draw_inverse(u, coordinates, solver))
     }
 
-    /// A photon's start by rejection; `None` where this point of the sequence gives none.
-    pub fn emit_by_rejection<P: Points>(
+    /// The same by a given way of sampling; `None` where this point of the sequence gives none.
+    #[inline]
+    pub fn emit_by<P: Points>(
         &self,
+        sampling: Sampling,
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
-        rejection: Rejection,
     ) -> Option<Emission> {
-        let point = self.grid.reject(u, coordinates, rejection)?;
-        Some(Emission { origin: self.position, direction: self.axes * point.direction })
+        self.grid.draw(sampling, u, coordinates).map(|point| self.start(point))
     }
 
     /// A photon's start with a direction uniform in solid angle where the table is not zero, and the weight (1 on average)
@@ -143,6 +139,11 @@ impl Photometric {
         coordinates: &mut Coordinates<'_, P>,
     ) -> (Emission, f64) {
         let (point, weight) = map.sample(&self.grid, u, coordinates);
-        (Emission { origin: self.position, direction: self.axes * point.direction }, weight)
+        (self.start(point), weight)
+    }
+
+    #[inline]
+    fn start(&self, point: GridPoint) -> Emission {
+        Emission { origin: self.position, direction: self.axes * point.direction }
     }
 }

@@ -22,8 +22,8 @@ use crate::scattering::{Frame, Lobe, LobeSide, Quantity, ScatterTable};
 use crate::units::LUMINANCE_OF_RGB;
 
 use super::polar::{
-    LINE_HEIGHT, MARGIN, RADIUS, RAY_STEP_DEG, RINGS, TEXT_SIZE, TICK_SIZE, TITLE_SIZE, WIDTH, curve_pen,
-    fitting, ink, text,
+    LINE_HEIGHT, MARGIN, RADIUS, RAY_STEP_DEG, RINGS, TEXT_SIZE, TICK_SIZE, WIDTH, curve_pen, draw_footer,
+    draw_title, ink, text,
 };
 use super::text::digits;
 
@@ -113,9 +113,7 @@ impl BsdfPlot {
     pub fn drawing(&self) -> Drawing {
         let page = self.page();
         let mut shapes = Vec::new();
-        let room = WIDTH as f64 - 2.0 * MARGIN;
-        let title = TextStyle::new(fitting(&self.title, TITLE_SIZE, room), Colour::grey(20)).weighing(1.25);
-        shapes.push(text([MARGIN, MARGIN + 16.0], &self.title, title));
+        draw_title(&mut shapes, &self.title);
         page.draw_grid(&mut shapes);
         let incidences = self.incidences();
         let colour_of = |slice: &Slice| incidences.iter().position(|i| i.0 == slice.theta_i_deg).unwrap_or(0);
@@ -131,12 +129,7 @@ impl BsdfPlot {
         }
         let mut y = page.centre[1] + if page.full { RADIUS } else { 0.0 } + 52.0;
         draw_legend(&mut shapes, &mut y, &incidences);
-        let style = TextStyle::new(TEXT_SIZE, ink());
-        for line in &self.footer {
-            let size = fitting(line, TEXT_SIZE, room);
-            shapes.push(text([MARGIN, y], line, TextStyle { size_px: size, ..style }));
-            y += LINE_HEIGHT;
-        }
+        draw_footer(&mut shapes, &mut y, &self.footer);
         Drawing { width: WIDTH, height: (y + MARGIN - LINE_HEIGHT + 4.0) as usize, shapes }
     }
 

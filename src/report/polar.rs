@@ -57,6 +57,24 @@ struct Frame {
     rings: Vec<Tick>,
 }
 
+/// Width between the margins.
+const ROOM: f64 = WIDTH as f64 - 2.0 * MARGIN;
+
+/// The title of a polar diagram.
+pub(super) fn draw_title(shapes: &mut Vec<Shape>, title: &str) {
+    let style = TextStyle::new(fitting(title, TITLE_SIZE, ROOM), Colour::grey(20)).weighing(1.25);
+    shapes.push(text([MARGIN, MARGIN + 16.0], title, style));
+}
+
+/// The lines under a polar diagram, from y down.
+pub(super) fn draw_footer(shapes: &mut Vec<Shape>, y: &mut f64, lines: &[String]) {
+    for line in lines {
+        let style = TextStyle::new(TEXT_SIZE, ink());
+        shapes.push(text([MARGIN, *y], line, TextStyle { size_px: fitting(line, TEXT_SIZE, ROOM), ..style }));
+        *y += LINE_HEIGHT;
+    }
+}
+
 impl PolarPlot {
     /// The diagram as an SVG document.
     pub fn to_svg(&self) -> String {
@@ -75,9 +93,7 @@ impl PolarPlot {
     pub fn drawing(&self) -> Drawing {
         let frame = self.frame();
         let mut shapes = Vec::new();
-        let room = WIDTH as f64 - 2.0 * MARGIN;
-        let title = TextStyle::new(fitting(&self.title, TITLE_SIZE, room), Colour::grey(20)).weighing(1.25);
-        shapes.push(text([MARGIN, MARGIN + 16.0], &self.title, title));
+        draw_title(&mut shapes, &self.title);
         draw_grid(&mut shapes, &frame);
         for (i, curve) in self.curves.iter().enumerate() {
             for points in chains(curve, &frame) {
@@ -86,12 +102,7 @@ impl PolarPlot {
         }
         let mut y = frame.centre[1] + RADIUS + 52.0;
         self.draw_legend(&mut shapes, &mut y);
-        let style = TextStyle::new(TEXT_SIZE, ink());
-        for line in &self.footer {
-            let size = fitting(line, TEXT_SIZE, room);
-            shapes.push(text([MARGIN, y], line, TextStyle { size_px: size, ..style }));
-            y += LINE_HEIGHT;
-        }
+        draw_footer(&mut shapes, &mut y, &self.footer);
         Drawing { width: WIDTH, height: (y + MARGIN - LINE_HEIGHT + 4.0) as usize, shapes }
     }
 

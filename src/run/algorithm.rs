@@ -156,6 +156,24 @@ impl Algorithm {
         format!("{}; {sampling}{coordinates}", self.sequence.name())
     }
 
+    /// Whether rejection that goes on with the next point can be right, where there is one emitter only or more.
+    ///
+    /// # Errors
+    /// Such a rejection on a sequence that ends after N points, and with several emitters: the next point chooses the
+    /// emitter anew, so that they would come out by flux times chance of acceptance.
+    pub fn check_skipping(&self, one_emitter: bool) -> Result<()> {
+        let required = match (self.sampling().skips_points(), self.sequence.needs_number(), one_emitter) {
+            (true, true, _) => {
+                "a sequence that goes on beyond N points, for rejection that retries with the next one"
+            }
+            (true, false, false) => {
+                "a scene with one emitter, for rejection that retries with the next point"
+            }
+            (true, false, true) | (false, ..) => return Ok(()),
+        };
+        Err(Diagnostic::new(Kind::Range, format!("variant {}", self.name()), required))
+    }
+
     /// How tables are sampled.
     pub fn sampling(&self) -> Sampling {
         if self.variant.rejects() {

@@ -92,7 +92,7 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
-        self.check_skipping()?;
+        self.algorithm.check_skipping(self.scene.emitters.is_single())?;
         let how = How {
             reuse: self.algorithm.variant.reuses(),
             sampling: self.algorithm.sampling(),
@@ -110,28 +110,6 @@ impl<'s> Tracer<'s> {
         check_balance(&traced)?;
         (self.photons, self.attempts) = (until, attempts);
         Ok(traced)
-    }
-}
-
-impl Tracer<'_> {
-    /// Whether rejection that goes on with the next point can be right here.
-    fn check_skipping(&self) -> Result<()> {
-        if !self.algorithm.sampling().skips_points() {
-            return Ok(());
-        }
-        let fail = |required: &str| {
-            Err(Diagnostic::new(Kind::Range, format!("variant {}", self.algorithm.name()), required))
-        };
-        if self.points.sequence.needs_number() {
-            return fail(
-                "a sequence that goes on beyond N points, for rejection that retries with the next one",
-            );
-        }
-        // The next point chooses the emitter anew: they would come out by flux times chance of acceptance.
-        if !self.scene.emitters.is_single() {
-            return fail("a scene with one emitter, for rejection that retries with the next point");
-        }
-        Ok(())
     }
 }
 

@@ -12,7 +12,6 @@ use glam::DVec3;
 use super::cell::{Cell, Column, Row};
 use super::choose::{Reusable, Share, TWO_TO_64, integer_widths};
 use super::grid::GridPoint;
-use super::marginal::Polar;
 use super::rejection::{Reached, reach};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::solve::Solver;
@@ -249,17 +248,8 @@ impl CompactGrids {
     #[inline]
     pub fn place(&self, slice: usize, cell: usize, u_theta: f64, u_phi: f64, solver: Solver) -> GridPoint {
         let (i, j) = (cell / self.columns.len(), cell % self.columns.len());
-        let (row, column) = (&self.rows[i], &self.columns[j]);
         let cell = self.cell(slice, i, j);
-        let Polar { s, sin, cos, evaluations } = cell.sample_theta(row, u_theta, solver);
-        let x = cell.sample_phi(row, s, u_phi);
-        let (sin_phi, cos_phi) = column.azimuth(x);
-        GridPoint {
-            direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
-            theta: row.theta + s,
-            phi: column.phi + x * column.width,
-            evaluations,
-        }
+        GridPoint::in_cell(&cell, &self.rows[i], &self.columns[j], [u_theta, u_phi], solver)
     }
 
     /// The point of a slice for two coordinates, the first a 64-bit fraction that also chooses the cell.

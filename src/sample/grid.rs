@@ -11,11 +11,13 @@ use glam::DVec3;
 
 use super::cell::{Cell, Column, Row};
 use super::choose::{Reusable, TWO_TO_64};
+use super::coordinates::{Coordinates, Purpose};
 use super::discrete::Discrete;
 use super::marginal::Polar;
+use super::method::Sampling;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::solve::Solver;
-use crate::sequence::to_unit_f64;
+use crate::sequence::{Points, to_unit_f64};
 
 /// Nodes a grid may have: 16 times the largest table seen in the wild (721 x 361).
 pub const MAX_NODES: usize = 1 << 22;
@@ -45,6 +47,28 @@ pub struct GridPoint {
     pub phi: f64,
     /// Evaluations of the cell equation that the solver used.
     pub evaluations: u32,
+}
+
+impl GridPoint {
+    /// The point of a cell for the continuous coordinates of theta and phi, by inverse functions.
+    #[inline]
+    pub(super) fn in_cell(
+        cell: &Cell,
+        row: &Row,
+        column: &Column,
+        [u_theta, u_phi]: [f64; 2],
+        solver: Solver,
+    ) -> Self {
+        let Polar { s, sin, cos, evaluations } = cell.sample_theta(row, u_theta, solver);
+        let x = cell.sample_phi(row, s, u_phi);
+        let (sin_phi, cos_phi) = column.azimuth(x);
+        Self {
+            direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
+            theta: row.theta + s,
+            phi: column.phi + x * column.width,
+            evaluations,
+        }
+    }
 }
 
 impl Grid {
@@ -121,17 +145,38 @@ impl Grid {
     /// The point of a chosen cell for the continuous coordinates of theta and phi.
     #[inline]
     pub fn place(&self, cell: usize, u_theta: f64, u_phi: f64, solver: Solver) -> GridPoint {
-        let cell = &self.cells[cell];
-        let (row, column) = (&self.rows[cell.row as usize], &self.columns[cell.column as usize]);
-        let Polar { s, sin, cos, evaluations } = cell.sample_theta(row, u_theta, solver);
-        let x = cell.sample_phi(row, s, u_phi);
-        let (sin_phi, cos_phi) = column.azimuth(x);
-        GridPoint {
-            direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
-            theta: row.theta + s,
-            phi: column.phi + x * column.width,
-            evaluations,
+        let (cell, row, column) = self.cell(cell);
+        GridPoint::in_cell(cell, row, column, [u_theta, u_phi], solver)
+    }
+
+    /// A photon's point by inverse functions or by rejection, or `None` where this point of the sequence gives none.
+    ///
+    /// `u` is what is left of the coordinate that chose the emitter.
+    #[inline]
+    pub fn draw<P: Points>(
+        &self,
+        sampling: Sampling,
+        u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+    ) -> Option<GridPoint> {
+        match sampling {
+            Sampling::Inverse(solver) => Some(self.draw_inverse(u, coordinates, solver)),
+            Sampling::Rejection(rejection) => self.reject(u, coordinates, rejection),
         }
+    }
+
+    /// A photon's point by inverse functions: the cell by its flux, then theta and phi.
+    #[inline]
+    pub fn draw_inverse<P: Points>(
+        &self,
+        mut u: Reusable,
+        coordinates: &mut Coordinates<'_, P>,
+        solver: Solver,
+    ) -> GridPoint {
+        let cell = coordinates.choose(&self.choice, &mut u, Purpose::Emission);
+        let u_theta = coordinates.remainder(u, Purpose::EmissionTheta);
+        let u_phi = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
+        self.place(cell, u_theta, u_phi, solver)
     }
 
     /// The point for two coordinates, the first a 64-bit fraction that also chooses the cell.
