@@ -59,6 +59,7 @@ pub mod scene;
 pub mod transport;
 pub mod tally;
 pub mod estimate;
+pub mod camera;
 pub mod run;
 pub mod study;
 pub mod certificate;

@@ -1,3 +1,4 @@
 //! From sums to illuminance and standard errors.
 
+pub mod density;
 pub mod replicates;

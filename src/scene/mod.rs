@@ -4,6 +4,7 @@
 //! what they are made of, emitters, receivers. After that nothing is checked again.
 
 pub mod build;
+pub mod camera;
 pub mod check;
 pub mod count;
 pub mod description;
@@ -20,6 +21,7 @@ use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
 
+use camera::CameraSpec;
 use description::Place;
 use receiver::{Receiver, ReceiverSpec};
 
@@ -49,6 +51,8 @@ pub struct Scene {
     pub emitter_names: Vec<String>,
     /// The fixed number of reflections of `[compare]`, where the scene names one.
     pub compared_reflections: Option<u32>,
+    /// The camera, where the scene has one.
+    pub camera: Option<CameraSpec>,
     /// Where it comes from.
     pub identity: Identity,
     /// What is allowed but probably not meant.
@@ -68,6 +72,8 @@ pub struct SceneParts {
     pub receivers: Vec<ReceiverSpec>,
     /// The fixed number of reflections of `[compare]`, if there is one.
     pub compared_reflections: Option<u32>,
+    /// The camera, if there is one.
+    pub camera: Option<CameraSpec>,
     /// Where the scene comes from; empty for one made in code.
     pub identity: Identity,
     /// Warnings so far.
@@ -124,6 +130,7 @@ impl Scene {
                 receivers,
                 emitter_names,
                 compared_reflections: parts.compared_reflections,
+                camera: parts.camera,
                 identity: parts.identity,
                 warnings: parts.warnings,
                 bsdfs,

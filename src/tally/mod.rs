@@ -5,6 +5,7 @@
 //! bit.
 
 pub mod counts;
+pub mod photon_map;
 pub mod receiver;
 pub mod weighted;
 
