@@ -13,6 +13,7 @@ mod support;
 
 use caustix::bsdf::tabulated::Options;
 use caustix::bsdf::{Bsdf, Fixed, Grey, Incidence, Outcome, Rgb, Tabulated, Throughput};
+use caustix::math::solve::Solver;
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::{Rejection, Sampling};
 use caustix::scattering::Quantity::{Reflection, Transmission};
@@ -25,7 +26,7 @@ use checks::{
 };
 use glam::DVec3;
 use support::statistics::{chi_square, sidak, z_test};
-use tables::{Case, cases, direction, incidence, incidences};
+use tables::{Case, angles, cases, direction, incidence, incidences};
 
 /// Chance of a false alarm in a whole test.
 const FAMILY: f64 = 1e-3;
@@ -204,6 +205,94 @@ fn the_jacobians_of_all_preimages_add_up_to_the_density() {
         println!("{:<24} {checked} points, {several} with several preimages", surface.name);
         assert!(checked > 200, "{}: {checked}", surface.name);
     }
+}
+
+/// The extremes that the checks above run over are what their names say.
+#[test]
+fn extremes_are_what_they_are_called() {
+    let all = surfaces();
+    let named = |name: &str| all.iter().find(|s| s.name == name).unwrap_or_else(|| panic!("no {name}"));
+    let wis = incidences();
+    let grazing = incidence(89.999, 310.0);
+    assert!(wis.contains(&DVec3::Z) && wis.iter().any(|wi| (*wi - grazing).length() < 1e-12));
+    let lit = |surface: &Surface, wi: DVec3| -> Vec<usize> {
+        let g = masses(surface, 0, wi).0;
+        (0..g.len()).filter(|k| g[*k] > 0.0).collect()
+    };
+    let columns = |surface: &Surface| surface.lobes[0].azimuth_deg.len() - 1;
+
+    // Light in the first step about the mirrored direction only: every cell there touches the pole.
+    let narrow = named("narrower than a step");
+    assert!(lit(narrow, incidence(35.0, 8.0)).into_iter().eq(0..columns(narrow)));
+
+    let one = named("one incidence");
+    let albedo = |surface: &Surface, theta_deg: f64| surface.sampler.albedo(true, incidence(theta_deg, 50.0));
+    assert!(one.lobes[0].theta_i_deg == [30.0]);
+    assert!(wis.iter().all(|wi| one.sampler.albedo(true, *wi) == albedo(one, 30.0)));
+
+    let black = named("a black slice");
+    assert!(albedo(black, 20.0)[0] > 0.0 && albedo(black, 40.0)[0] > 0.0);
+    // 30 degrees come back from a direction with rounding, which lets a neighbour in.
+    assert!(luminance(black.sampler.albedo(true, incidence(30.0, 270.0))) < 1e-15);
+
+    assert_eq!(lit(named("one cell"), incidence(20.0, 0.0)).len(), 1);
+
+    for name in ["ggx", "stops at 60 degrees", "anisotropic"] {
+        assert!(below_horizon(named(name), grazing, 2000) > 0.01, "{name} crosses the horizon");
+    }
+    let bsdf = Bsdf::Tabulated(Box::new(named("ggx").sampler.clone()));
+    let points = IndependentPoints::new(3, 0);
+    let lost = (0..2000).any(|i| {
+        let mut c = Coordinates::new(&points, i, true);
+        matches!(bsdf.interact(&arriving(grazing), &mut c, &mut Grey), Outcome::BelowHorizon)
+    });
+    assert!(lost, "light below the horizon is an account of its own");
+
+    let wide = &named("1e12 range").lobes[0].values;
+    let (low, high) = wide.iter().fold((f32::MAX, 0.0f32), |(low, high), v| (low.min(*v), high.max(*v)));
+    assert!(low > 0.0 && f64::from(high) / f64::from(low) > 0.99e12, "{low} {high}");
+
+    let [red, green, blue] = albedo(named("rgb"), 41.0);
+    assert!(red > 0.0 && green > 0.0 && red != green && blue == 0.0, "{red} {green} {blue}");
+
+    let stops = named("stops at 60 degrees");
+    assert_eq!(stops.lobes[0].theta_i_deg.last(), Some(&60.0));
+    assert_eq!(albedo(stops, 75.0), albedo(stops, 61.0));
+
+    // At grazing incidence both poles of the frame have cells with light, and both kinds are sampled.
+    let poles = named("pole cells");
+    let (rows, n) = (poles.lobes[0].polar_deg.len() - 1, columns(poles));
+    let cells = lit(poles, grazing);
+    assert!((0..n).all(|k| cells.contains(&k)) && cells.iter().any(|k| k / n == rows - 1), "{cells:?}");
+}
+
+/// In the cells about a pole the azimuth of samples follows the conditional of a flat ring: even, at any size of theta.
+#[test]
+fn azimuths_are_even_about_the_pole() {
+    let all = surfaces();
+    let narrow = all.iter().find(|s| s.name == "narrower than a step").unwrap();
+    // On an angle of the table, far from the horizon: all nodes of the pole are one value.
+    let wi = incidence(10.0, 0.0);
+    let data = &narrow.lobes[0];
+    let mut rings = [[0u64; 24]; 3];
+    for i in 0..200_000u64 {
+        let (u1, u2) = (mix64(!(2 * i)), to_unit_f64(mix64(!(2 * i + 1))));
+        let s = narrow.sampler.sample(true, wi, u1, u2, Solver::DEFAULT).unwrap();
+        let (theta, phi) = angles(data.frame, data.quantity, wi, s.wo);
+        let ring = ((theta.to_degrees() / 5.0 * 3.0) as usize).min(2);
+        let turn = (phi / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
+        rings[ring][((24.0 * turn) as usize).min(23)] += 1;
+    }
+    let level = sidak(FAMILY, rings.len());
+    for ring in &rings {
+        let test = chi_square(ring, &[1.0; 24]);
+        assert!(test.p_value > level && test.degrees == 23, "{test:?}");
+    }
+    // g falls linearly from the pole to the first node: P(theta < t) = (x^2 - 2 x^3 / 3) / (1/3) for x = t / step, but for the
+    // sine's curvature, 1e-3 of it.
+    let inner = rings[0].iter().sum::<u64>() as f64 / 200_000.0;
+    let expected = 3.0 * (1.0 / 9.0 - 2.0 / 81.0);
+    assert!((inner - expected).abs() < 4.5 * (expected * (1.0 - expected) / 2e5).sqrt() + 1e-3, "{inner}");
 }
 
 /// A photon at a surface whose reference direction is x, arriving from wi.
