@@ -56,6 +56,27 @@ fn text_tables_unfold_by_their_symmetry() {
     assert_eq!(lobe.declared_tis, [0.5, 0.25]);
 }
 
+/// About the direction mirrored at 45 degrees one node with a value looks below the horizon: 60 degrees away from the normal, 105
+/// degrees from it in all.
+#[test]
+fn values_below_the_horizon_are_said_and_counted() {
+    let text = "caustix-scattering 1
+frame specular symmetry plane
+theta_i 45
+polar 0 30 60 180
+azimuth 0 90 180
+lobe reflection both
+incidence 45
+1 1 1 0
+1 1 1 0
+1 1 7 0";
+    let table = parse(text.as_bytes(), "c.scatter").unwrap();
+    let found: Vec<&str> = table.warnings.iter().map(|w| w.found()).collect();
+    assert_eq!(found, ["1 values of the reflection below the horizon, up to 7/sr"]);
+    assert!(value(&table.lobes[0], 0, unit(45.0, 180.0), unit(89.9, 0.0)) > 0.0);
+    assert!(parse(text.replace('7', "0").as_bytes(), "c.scatter").unwrap().warnings.is_empty());
+}
+
 #[test]
 fn rotational_and_coloured_lobes_share_a_header() {
     let text = "caustix-scattering 1
