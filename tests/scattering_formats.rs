@@ -8,6 +8,12 @@ use caustix::scattering::{Format, Frame, LobeSide, Quantity, merl, parse};
 use glam::DVec3;
 use std::f64::consts::PI;
 
+#[allow(dead_code)]
+#[path = "support/scatter_files.rs"]
+mod scatter_files;
+
+use scatter_files::merl_file;
+
 fn unit(theta_deg: f64, phi_deg: f64) -> DVec3 {
     let (t, p) = (theta_deg.to_radians(), phi_deg.to_radians());
     DVec3::new(t.sin() * p.cos(), t.sin() * p.sin(), t.cos())
@@ -48,6 +54,27 @@ fn text_tables_unfold_by_their_symmetry() {
     assert_eq!(lobe.slice(0, 0, 0), [1., 4., 7., 4., 1., 2., 5., 8., 5., 2., 3., 6., 9., 6., 3.]);
     assert_eq!(lobe.slice(0, 0, 1)[6], 50.0);
     assert_eq!(lobe.declared_tis, [0.5, 0.25]);
+}
+
+/// About the direction mirrored at 45 degrees one node with a value looks below the horizon: 60 degrees away from the normal, 105
+/// degrees from it in all.
+#[test]
+fn values_below_the_horizon_are_said_and_counted() {
+    let text = "caustix-scattering 1
+frame specular symmetry plane
+theta_i 45
+polar 0 30 60 180
+azimuth 0 90 180
+lobe reflection both
+incidence 45
+1 1 1 0
+1 1 1 0
+1 1 7 0";
+    let table = parse(text.as_bytes(), "c.scatter").unwrap();
+    let found: Vec<&str> = table.warnings.iter().map(|w| w.found()).collect();
+    assert_eq!(found, ["1 values of the reflection below the horizon, up to 7/sr"]);
+    assert!(value(&table.lobes[0], 0, unit(45.0, 180.0), unit(89.9, 0.0)) > 0.0);
+    assert!(parse(text.replace('7', "0").as_bytes(), "c.scatter").unwrap().warnings.is_empty());
 }
 
 #[test]
@@ -308,27 +335,6 @@ fn bad_window_files_are_refused_with_a_place() {
 fn measured(theta_h: f64, theta_d: f64) -> [f64; 3] {
     let lobe = (-(theta_h / 0.3) * (theta_h / 0.3)).exp() * (1.0 + 0.5 * theta_d);
     [0.05 + lobe, 0.1 + 0.5 * lobe, 0.2]
-}
-
-fn merl_file(f: impl Fn(f64, f64, usize) -> [f64; 3]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(merl::FILE_BYTES);
-    for count in [90u32, 90, 180] {
-        bytes.extend(count.to_le_bytes());
-    }
-    let scales = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
-    let degree = PI / 180.0;
-    for channel in 0..3 {
-        for h in 0..90 {
-            let x = (f64::from(h) + 0.5) / 90.0;
-            for d in 0..90 {
-                let rgb = f(0.5 * PI * x * x, (f64::from(d) + 0.5) * degree, d as usize);
-                for _ in 0..180 {
-                    bytes.extend((rgb[channel] / scales[channel]).to_le_bytes());
-                }
-            }
-        }
-    }
-    bytes
 }
 
 #[test]

@@ -164,6 +164,23 @@ fn interpolation_error(table: &make_brdf::Table, file: &ScatterTable, lobe: usiz
     (error / norm).sqrt()
 }
 
+/// (interpolation error, defect of reciprocity) that the README states for a lobe, "quantity side".
+fn stated_errors(file: &str, lobe: &str) -> (f64, f64) {
+    let readme = std::fs::read_to_string(folder().join("README.md")).unwrap();
+    let start = format!("| `{}` | {lobe} |", file.trim_end_matches(".scatter"));
+    let row =
+        readme.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("no {start}"));
+    let cells: Vec<f64> = row.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
+    (cells[0], cells[1])
+}
+
+/// Four decimals, as stated.
+fn assert_stated(file: &str, lobe: &str, error: f64, defect: f64) {
+    let (stated_error, stated_defect) = stated_errors(file, lobe);
+    let close = |a: f64, b: f64| (a - b).abs() <= 0.6e-4;
+    assert!(close(error, stated_error) && close(defect, stated_defect), "{file} {lobe}: {error} {defect}");
+}
+
 #[test]
 fn reciprocal_tables_are_so_within_their_interpolation_error() {
     for table in make_brdf::tables() {
@@ -178,6 +195,8 @@ fn reciprocal_tables_are_so_within_their_interpolation_error() {
                 "{} {quantity:?}: rms {:.5}, largest {:.3}; interpolation {error:.5}",
                 table.file, defect.rms, defect.largest
             );
+            let word = if quantity == Quantity::Reflection { "reflection both" } else { "transmission both" };
+            assert_stated(table.file, word, error, defect.rms);
             // f12 - f21 is the difference of two errors.
             assert!(defect.rms <= 2.0 * error + 1e-4, "{} {quantity:?}: {} {error}", table.file, defect.rms);
             assert!(defect.pairs > 1000 && error < 0.12, "{}: {error}", table.file);
@@ -212,6 +231,8 @@ fn glass_is_reciprocal_but_for_the_square_of_its_index() {
     let glass = tables.iter().find(|t| t.file == "rough_glass.scatter").unwrap();
     let errors = [1, 3].map(|lobe| interpolation_error(glass, &table, lobe));
     println!("f / n^2: {rms}, interpolation {errors:?}; f: {bare}, expected {expected}");
+    assert_stated(glass.file, "transmission front", errors[0], rms);
+    assert_stated(glass.file, "transmission back", errors[1], rms);
     assert!(rms <= errors[0] + errors[1] && errors.iter().all(|e| *e < 0.05), "{rms} {errors:?}");
     assert!((bare - expected).abs() <= rms, "{bare} {expected}");
 }

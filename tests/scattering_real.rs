@@ -8,6 +8,7 @@ use caustix::scattering::{self, Frame, Lobe, LobeSide, Quantity};
 use glam::DVec3;
 use std::f64::consts::PI;
 
+#[allow(dead_code)]
 #[path = "support/scatter_files.rs"]
 mod scatter_files;
 

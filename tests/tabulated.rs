@@ -4,6 +4,8 @@
 //! The frames are written down here once more, from the words of the table's documentation.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
+#[path = "tabulated_support/checks.rs"]
+mod checks;
 #[path = "tabulated_support/mod.rs"]
 mod tables;
 
@@ -18,8 +20,11 @@ use caustix::scattering::Quantity::{Reflection, Transmission};
 use caustix::sequence::hash::mix64;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::to_unit_f64;
+use checks::{
+    Surface, above, below_horizon, cell, integrals_agree, inverse_returns, jacobians_add_up, luminance,
+    masses, samples_against_density,
+};
 use glam::DVec3;
-use support::quadrature::Gauss;
 use support::statistics::{chi_square, sidak, z_test};
 use tables::{Case, angles, cases, direction, incidence, incidences};
 
@@ -30,44 +35,13 @@ fn tabulated(case: &Case) -> Tabulated {
     Tabulated::new(&case.table(), &Options::default()).unwrap().0
 }
 
-/// Integrals of g and of the density over the cells of a lobe's grid, by quadrature.
-fn masses(t: &Tabulated, case: &Case, lobe: usize, wi: DVec3) -> (Vec<f64>, Vec<f64>) {
-    let data = &case.lobes[lobe];
-    let (along, around) = (Gauss::new(7), Gauss::new(3));
-    let (mut g, mut pdf) = (Vec::new(), Vec::new());
-    for polar in data.polar_deg.windows(2) {
-        for azimuth in data.azimuth_deg.windows(2) {
-            let integrate = |f: &dyn Fn(DVec3) -> f64| {
-                along.integrate(polar[0].to_radians(), polar[1].to_radians(), |theta| {
-                    theta.sin()
-                        * around.integrate(azimuth[0].to_radians(), azimuth[1].to_radians(), |phi| {
-                            f(direction(data.frame, data.quantity, wi, theta, phi))
-                        })
-                })
-            };
-            g.push(integrate(&|wo| luminance(t.eval_cos(true, wi, wo, data.quantity))));
-            pdf.push(integrate(&|wo| t.pdf_omega(true, wi, wo, data.quantity)));
-        }
-    }
-    (g, pdf)
+fn surface(case: &Case) -> Surface {
+    let (name, lobes) = (case.name.to_owned(), case.lobes.clone());
+    Surface { name, lobes, sampler: tabulated(case), from_front: true }
 }
 
-fn luminance(rgb: [f64; 3]) -> f64 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
-}
-
-/// The cell of a lobe's grid that holds a direction.
-fn cell(case: &Case, lobe: usize, wi: DVec3, wo: DVec3) -> usize {
-    let data = &case.lobes[lobe];
-    let (theta, phi) = angles(data.frame, data.quantity, wi, wo);
-    let (theta, mut phi) = (theta.to_degrees(), phi.to_degrees());
-    if phi < data.azimuth_deg[0] {
-        phi += 360.0;
-    }
-    let at = |angles: &[f64], x: f64| {
-        angles[1..angles.len() - 1].iter().filter(|a| x >= **a).count().min(angles.len() - 2)
-    };
-    at(&data.polar_deg, theta) * (data.azimuth_deg.len() - 1) + at(&data.azimuth_deg, phi)
+fn surfaces() -> Vec<Surface> {
+    cases().iter().map(surface).collect()
 }
 
 #[test]
@@ -120,33 +94,76 @@ fn values_at_the_nodes_are_those_of_the_table() {
     }
 }
 
+/// Between the table's angles g is the linear mixture of its slices at the same angles of the lobe's own frame; before the first
+/// and beyond the last theta_i it is that slice.
 #[test]
-fn albedo_is_the_integral_of_the_value_and_the_density_integrates_to_one() {
+fn incident_angles_mix_linearly_where_the_lobe_stands_still() {
+    // At normal incidence itself the plane of incidence is another one: this many degrees stand for none.
+    let least = 1e-3f64;
+    let mut checked = 0;
     for case in cases() {
         let t = tabulated(&case);
+        for data in &case.lobes {
+            let g = |theta_i: f64, phi_i: f64, theta: f64, phi: f64| {
+                let wi = incidence(theta_i, phi_i);
+                t.eval_cos(true, wi, direction(data.frame, data.quantity, wi, theta, phi), data.quantity)
+            };
+            let thetas = &data.theta_i_deg;
+            let (first, last) = (thetas[0], thetas[thetas.len() - 1]);
+            // (theta_i, the table's angles about it, the part of the second).
+            let mut places = vec![(0.5 * (last + 90.0), last.max(least), last.max(least), 0.0)];
+            if first > 0.0 {
+                places.push((0.5 * first, first, first, 0.0));
+            }
+            for pair in thetas.windows(2) {
+                let low = pair[0].max(least);
+                places.extend([0.25, 0.6].map(|t| (low + t * (pair[1] - low), low, pair[1], t)));
+            }
+            let phis = if data.phi_i_deg.len() == 1 { &[10.0, 47.0][..] } else { &data.phi_i_deg[..] };
+            for (turn, (middle, low, high, along)) in
+                phis.windows(2).flat_map(|turn| places.iter().map(move |place| (turn, *place)))
+            {
+                for k in 0..40u64 {
+                    let u = |j: u64| to_unit_f64(mix64(1 + 8 * k + j));
+                    let theta = data.polar_deg[data.polar_deg.len() - 1].to_radians() * u(0);
+                    let phi = (u(1) - 0.5) * 6.2;
+                    let across = if data.phi_i_deg.len() == 1 { 0.0 } else { u(2) };
+                    let corners = [
+                        (g(low, turn[0], theta, phi), (1.0 - along) * (1.0 - across)),
+                        (g(high, turn[0], theta, phi), along * (1.0 - across)),
+                        (g(low, turn[1], theta, phi), (1.0 - along) * across),
+                        (g(high, turn[1], theta, phi), along * across),
+                    ];
+                    let found = g(middle, turn[0] + across * (turn[1] - turn[0]), theta, phi);
+                    for channel in 0..3 {
+                        let expected: f64 = corners.iter().map(|(g, w)| w * g[channel]).sum();
+                        let largest = corners.iter().map(|(g, _)| g[channel]).fold(0.0, f64::max);
+                        let error = (found[channel] - expected).abs();
+                        assert!(
+                            error <= 2.0 * least / 20.0 * largest + 1e-13,
+                            "{} at {middle}: {found:?}, expected {expected}",
+                            case.name
+                        );
+                        checked += usize::from(expected > 0.0);
+                    }
+                }
+            }
+        }
+    }
+    assert!(checked > 5000, "{checked}");
+}
+
+#[test]
+fn albedo_is_the_integral_of_the_value_and_the_density_integrates_to_one() {
+    for surface in surfaces() {
         let (mut worst, mut below) = (0.0f64, 0.0f64);
         for wi in incidences() {
-            let mut whole = 0.0;
-            for (lobe, data) in case.lobes.iter().enumerate() {
-                let (g, pdf) = masses(&t, &case, lobe, wi);
-                let (g, pdf): (f64, f64) = (g.iter().sum(), pdf.iter().sum());
-                let albedo = luminance(t.albedo_of(true, wi, data.quantity));
-                assert!((g - albedo).abs() <= 1e-6 * albedo, "{} {wi}: {g} {albedo}", case.name);
-                worst = worst.max((g / albedo - 1.0).abs());
-                whole += pdf;
-            }
-            let albedo = luminance(t.albedo(true, wi));
-            let expected = if albedo > 0.0 { 1.0 } else { 0.0 };
-            assert!((whole - expected).abs() < 1e-6, "{} {wi}: {whole}", case.name);
-            let lost = (0..2000u64).filter(|i| {
-                let (u1, u2) = (mix64(2 * i), to_unit_f64(mix64(2 * i + 1)));
-                t.sample(true, wi, u1, u2, Solver::DEFAULT).is_some_and(|s| s.below_horizon)
-            });
-            below = below.max(lost.count() as f64 / 2000.0);
+            worst = worst.max(integrals_agree(&surface, wi));
+            below = below.max(below_horizon(&surface, wi, 2000));
         }
         println!(
             "{:<24} albedo against quadrature {worst:.1e}, below the horizon up to {:.1} %",
-            case.name,
+            surface.name,
             100.0 * below
         );
     }
@@ -154,125 +171,128 @@ fn albedo_is_the_integral_of_the_value_and_the_density_integrates_to_one() {
 
 #[test]
 fn samples_follow_the_density() {
-    let cases = cases();
-    let level = sidak(FAMILY, cases.len() * incidences().len());
-    let n = 20_000u64;
-    for (k, case) in cases.iter().enumerate() {
-        let t = tabulated(case);
+    let surfaces = surfaces();
+    let level = sidak(FAMILY, surfaces.len() * incidences().len());
+    for (k, surface) in surfaces.iter().enumerate() {
         let mut least = 1.0f64;
         for (d, wi) in incidences().into_iter().enumerate() {
-            let expected: Vec<Vec<f64>> =
-                (0..case.lobes.len()).map(|lobe| masses(&t, case, lobe, wi).1).collect();
-            if luminance(t.albedo(true, wi)) == 0.0 {
-                assert!(t.sample(true, wi, 7 << 60, 0.3, Solver::DEFAULT).is_none());
-                continue;
-            }
-            let mut observed: Vec<Vec<u64>> = expected.iter().map(|m| vec![0; m.len()]).collect();
-            for i in 0..n {
-                let key = mix64((k as u64) << 40 | (d as u64) << 32 | i);
-                let (u1, u2) = (mix64(key), to_unit_f64(mix64(!key)));
-                let s = t.sample(true, wi, u1, u2, Solver::DEFAULT).unwrap();
-                let lobe = case.lobes.iter().position(|l| l.quantity == s.quantity).unwrap();
-                observed[lobe][cell(case, lobe, wi, s.wo)] += 1;
-                assert!((s.wo.length() - 1.0).abs() < 1e-12);
-                let side = if s.quantity == Reflection { s.wo.z } else { -s.wo.z };
-                assert_eq!(s.below_horizon, side <= 0.0);
-            }
-            let test = chi_square(&observed.concat(), &expected.concat());
-            assert!(test.p_value > level, "{} {wi}: {test:?}", case.name);
+            let key = (k as u64) << 8 | d as u64;
+            let Some(test) = samples_against_density(surface, wi, 20_000, key) else { continue };
+            assert!(test.p_value > level, "{} {wi}: {test:?}", surface.name);
             least = least.min(test.p_value);
         }
-        println!("{:<24} least p {least:.4} of 12 (level {level:.1e})", case.name);
+        println!("{:<24} least p {least:.4} of 12 (level {level:.1e})", surface.name);
     }
 }
 
 #[test]
 fn sample_then_invert_returns_the_coordinates() {
-    for case in cases() {
-        let t = tabulated(&case);
-        let mut checked = 0;
-        for wi in incidences() {
-            for i in 0..1000u64 {
-                let (u1, u2) = (mix64(2 * i + 1), to_unit_f64(mix64(2 * i + 2)));
-                let Some(s) = t.sample(true, wi, u1, u2, Solver::DEFAULT) else { continue };
-                let all = t.invert(true, wi, s.wo, s.quantity);
-                let near =
-                    |(v1, v2): &(u64, f64)| (v1.abs_diff(u1) as f64 / 2f64.powi(64)).hypot((v2 - u2) * 1e-3);
-                let Some(best) = all.iter().min_by(|a, b| near(a).total_cmp(&near(b))) else {
-                    panic!("{} {wi} {i}: no coordinates of {s:?}", case.name);
-                };
-                // Where the density vanishes at the edge of a cell, phi says little about u2.
-                let steep = t.pdf_omega(true, wi, s.wo, s.quantity) < 1e-3;
-                let first = best.0.abs_diff(u1) as f64 / 2f64.powi(64);
-                assert!(first < 1e-9, "{} {wi} {i}: {best:?} for {u1} {u2}", case.name);
-                assert!((best.1 - u2).abs() < 1e-6 || steep, "{} {wi} {i}: {best:?} {u2}", case.name);
-                let again = t.sample(true, wi, best.0, best.1, Solver::DEFAULT).unwrap();
-                assert!((again.wo - s.wo).length() < 1e-6, "{} {wi} {i}", case.name);
-                checked += 1;
-            }
-        }
-        assert!(checked >= 5000, "{}: {checked}", case.name);
+    for surface in surfaces() {
+        let checked: usize = incidences().into_iter().map(|wi| inverse_returns(&surface, wi, 1000)).sum();
+        assert!(checked >= 5000, "{}: {checked}", surface.name);
     }
-}
-
-/// 1 / |d wo / d(u1, u2)| by central differences of two widths; `None` where they disagree (an edge of a cell or a choice).
-fn inverse_jacobian(t: &Tabulated, wi: DVec3, (u1, u2): (u64, f64)) -> Option<f64> {
-    let at = |h1: u64, h2: f64| {
-        let sample = |u1: u64, u2: f64| Some(t.sample(true, wi, u1, u2, Solver::DEFAULT)?.wo);
-        let (up, down) = (u1.checked_add(h1)?, u1.checked_sub(h1)?);
-        let d1 = (sample(up, u2)? - sample(down, u2)?) / (2.0 * h1 as f64 / 2f64.powi(64));
-        let d2 = (sample(u1, u2 + h2)? - sample(u1, u2 - h2)?) / (2.0 * h2);
-        Some(1.0 / d1.cross(d2).length())
-    };
-    if !(0.02..0.98).contains(&u2) {
-        return None;
-    }
-    let (wide, narrow) = (at(1 << 39, 2e-6)?, at(1 << 38, 1e-6)?);
-    ((wide / narrow - 1.0).abs() < 1e-4).then_some(narrow)
 }
 
 #[test]
 fn the_jacobians_of_all_preimages_add_up_to_the_density() {
-    for case in cases() {
-        let t = tabulated(&case);
+    for surface in surfaces() {
         let (mut checked, mut several) = (0, 0);
         for wi in incidences() {
-            for i in 0..300u64 {
-                let (u1, u2) = (mix64(!(3 * i)), to_unit_f64(mix64(!(3 * i + 1))));
-                let Some(s) = t.sample(true, wi, u1, u2, Solver::DEFAULT) else { continue };
-                let all = t.invert(true, wi, s.wo, s.quantity);
-                let Some(parts) =
-                    all.iter().map(|u| inverse_jacobian(&t, wi, *u)).collect::<Option<Vec<_>>>()
-                else {
-                    continue;
-                };
-                let sum: f64 = parts.iter().sum();
-                let pdf = t.pdf_omega(true, wi, s.wo, s.quantity);
-                assert!((sum / pdf - 1.0).abs() < 2e-4, "{} {wi} {i}: {sum} {pdf} {all:?}", case.name);
-                checked += 1;
-                several += usize::from(all.len() > 1);
-            }
+            let (some, of_several) = jacobians_add_up(&surface, wi, 300);
+            checked += some;
+            several += of_several;
         }
-        println!("{:<24} {checked} points, {several} with several preimages", case.name);
-        assert!(checked > 200, "{}: {checked}", case.name);
+        println!("{:<24} {checked} points, {several} with several preimages", surface.name);
+        assert!(checked > 200, "{}: {checked}", surface.name);
     }
 }
 
-/// Whether a lobe's cells are above the horizon, by their corners; the great circle bends less than 0.02 between them.
-fn above(case: &Case, lobe: usize, wi: DVec3) -> Vec<bool> {
-    let data = &case.lobes[lobe];
-    let mut all = Vec::new();
-    for polar in data.polar_deg.windows(2) {
-        for azimuth in data.azimuth_deg.windows(2) {
-            let corners = polar.iter().flat_map(|p| azimuth.iter().map(move |a| (p, a)));
-            let sides = corners.map(|(p, a)| {
-                let wo = direction(data.frame, data.quantity, wi, p.to_radians(), a.to_radians());
-                if data.quantity == Reflection { wo.z } else { -wo.z }
-            });
-            all.push(sides.fold(1.0, f64::min) > 0.02 || data.frame == caustix::scattering::Frame::Surface);
-        }
+/// The extremes that the checks above run over are what their names say.
+#[test]
+fn extremes_are_what_they_are_called() {
+    let all = surfaces();
+    let named = |name: &str| all.iter().find(|s| s.name == name).unwrap_or_else(|| panic!("no {name}"));
+    let wis = incidences();
+    let grazing = incidence(89.999, 310.0);
+    assert!(wis.contains(&DVec3::Z) && wis.iter().any(|wi| (*wi - grazing).length() < 1e-12));
+    let lit = |surface: &Surface, wi: DVec3| -> Vec<usize> {
+        let g = masses(surface, 0, wi).0;
+        (0..g.len()).filter(|k| g[*k] > 0.0).collect()
+    };
+    let columns = |surface: &Surface| surface.lobes[0].azimuth_deg.len() - 1;
+
+    // Light in the first step about the mirrored direction only: every cell there touches the pole.
+    let narrow = named("narrower than a step");
+    assert!(lit(narrow, incidence(35.0, 8.0)).into_iter().eq(0..columns(narrow)));
+
+    let one = named("one incidence");
+    let albedo = |surface: &Surface, theta_deg: f64| surface.sampler.albedo(true, incidence(theta_deg, 50.0));
+    assert!(one.lobes[0].theta_i_deg == [30.0]);
+    assert!(wis.iter().all(|wi| one.sampler.albedo(true, *wi) == albedo(one, 30.0)));
+
+    let black = named("a black slice");
+    assert!(albedo(black, 20.0)[0] > 0.0 && albedo(black, 40.0)[0] > 0.0);
+    // 30 degrees come back from a direction with rounding, which lets a neighbour in.
+    assert!(luminance(black.sampler.albedo(true, incidence(30.0, 270.0))) < 1e-15);
+
+    assert_eq!(lit(named("one cell"), incidence(20.0, 0.0)).len(), 1);
+
+    for name in ["ggx", "stops at 60 degrees", "anisotropic"] {
+        assert!(below_horizon(named(name), grazing, 2000) > 0.01, "{name} crosses the horizon");
     }
-    all
+    let bsdf = Bsdf::Tabulated(Box::new(named("ggx").sampler.clone()));
+    let points = IndependentPoints::new(3, 0);
+    let lost = (0..2000).any(|i| {
+        let mut c = Coordinates::new(&points, i, true);
+        matches!(bsdf.interact(&arriving(grazing), &mut c, &mut Grey), Outcome::BelowHorizon)
+    });
+    assert!(lost, "light below the horizon is an account of its own");
+
+    let wide = &named("1e12 range").lobes[0].values;
+    let (low, high) = wide.iter().fold((f32::MAX, 0.0f32), |(low, high), v| (low.min(*v), high.max(*v)));
+    assert!(low > 0.0 && f64::from(high) / f64::from(low) > 0.99e12, "{low} {high}");
+
+    let [red, green, blue] = albedo(named("rgb"), 41.0);
+    assert!(red > 0.0 && green > 0.0 && red != green && blue == 0.0, "{red} {green} {blue}");
+
+    let stops = named("stops at 60 degrees");
+    assert_eq!(stops.lobes[0].theta_i_deg.last(), Some(&60.0));
+    assert_eq!(albedo(stops, 75.0), albedo(stops, 61.0));
+
+    // At grazing incidence both poles of the frame have cells with light, and both kinds are sampled.
+    let poles = named("pole cells");
+    let (rows, n) = (poles.lobes[0].polar_deg.len() - 1, columns(poles));
+    let cells = lit(poles, grazing);
+    assert!((0..n).all(|k| cells.contains(&k)) && cells.iter().any(|k| k / n == rows - 1), "{cells:?}");
+}
+
+/// In the cells about a pole the azimuth of samples follows the conditional of a flat ring: even, at any size of theta.
+#[test]
+fn azimuths_are_even_about_the_pole() {
+    let all = surfaces();
+    let narrow = all.iter().find(|s| s.name == "narrower than a step").unwrap();
+    // On an angle of the table, far from the horizon: all nodes of the pole are one value.
+    let wi = incidence(10.0, 0.0);
+    let data = &narrow.lobes[0];
+    let mut rings = [[0u64; 24]; 3];
+    for i in 0..200_000u64 {
+        let (u1, u2) = (mix64(!(2 * i)), to_unit_f64(mix64(!(2 * i + 1))));
+        let s = narrow.sampler.sample(true, wi, u1, u2, Solver::DEFAULT).unwrap();
+        let (theta, phi) = angles(data.frame, data.quantity, wi, s.wo);
+        let ring = ((theta.to_degrees() / 5.0 * 3.0) as usize).min(2);
+        let turn = (phi / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
+        rings[ring][((24.0 * turn) as usize).min(23)] += 1;
+    }
+    let level = sidak(FAMILY, rings.len());
+    for ring in &rings {
+        let test = chi_square(ring, &[1.0; 24]);
+        assert!(test.p_value > level && test.degrees == 23, "{test:?}");
+    }
+    // g falls linearly from the pole to the first node: P(theta < t) = (x^2 - 2 x^3 / 3) / (1/3) for x = t / step, but for the
+    // sine's curvature, 1e-3 of it.
+    let inner = rings[0].iter().sum::<u64>() as f64 / 200_000.0;
+    let expected = 3.0 * (1.0 / 9.0 - 2.0 / 81.0);
+    assert!((inner - expected).abs() < 4.5 * (expected * (1.0 - expected) / 2e5).sqrt() + 1e-3, "{inner}");
 }
 
 /// A photon at a surface whose reference direction is x, arriving from wi.
@@ -290,12 +310,13 @@ fn rejection_follows_the_same_density() {
     let level = sidak(FAMILY, chosen.len() * ways.len() * wis.len());
     assert_eq!(chosen.len(), wanted.len());
     for case in chosen {
-        let bsdf = Bsdf::Tabulated(Box::new(tabulated(case)));
-        let Bsdf::Tabulated(t) = &bsdf else { unreachable!() };
+        let surface = surface(case);
+        let t = &surface.sampler;
+        let bsdf = Bsdf::Tabulated(Box::new(t.clone()));
         for (k, rejection) in ways.into_iter().enumerate() {
             for wi in wis {
                 let expected: Vec<Vec<f64>> =
-                    (0..case.lobes.len()).map(|lobe| masses(t, case, lobe, wi).0).collect();
+                    (0..case.lobes.len()).map(|lobe| masses(&surface, lobe, wi).0).collect();
                 let mut observed: Vec<Vec<u64>> = expected.iter().map(|m| vec![0; m.len()]).collect();
                 let points = IndependentPoints::new(40 + k as u64, 0);
                 let (n, mut below, mut absorbed) = (30_000u64, 0, 0);
@@ -305,14 +326,15 @@ fn rejection_follows_the_same_density() {
                         Outcome::Leaves { direction, through, .. } => {
                             let quantity = if through { Transmission } else { Reflection };
                             let lobe = case.lobes.iter().position(|l| l.quantity == quantity).unwrap();
-                            observed[lobe][cell(case, lobe, wi, direction)] += 1;
+                            observed[lobe][cell(&surface, lobe, wi, direction)] += 1;
                         }
                         Outcome::BelowHorizon => below += 1,
                         Outcome::Absorbed => absorbed += 1,
                     }
                 }
                 // Below the horizon there is no direction to count: the cells that may reach there are one.
-                let safe: Vec<bool> = (0..case.lobes.len()).flat_map(|lobe| above(case, lobe, wi)).collect();
+                let safe: Vec<bool> =
+                    (0..case.lobes.len()).flat_map(|lobe| above(&surface, lobe, wi)).collect();
                 let (mut counts, mut weights) = (vec![absorbed, below], vec![0.0; 2]);
                 weights[0] = 1.0 - luminance(t.albedo(true, wi));
                 for ((count, weight), safe) in observed.concat().into_iter().zip(expected.concat()).zip(safe)

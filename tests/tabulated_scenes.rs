@@ -264,6 +264,55 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
     assert!([DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z].into_iter().any(|d| lit(&along_x, DVec3::X, true, d)));
 }
 
+/// A lobe about the mirrored direction of grazing light reaches below the horizon: what it sends there is absorbed and
+/// counted, the rest leaves. Both parts by the midpoint rule over the hemisphere, in the surface's own angles.
+#[test]
+fn light_below_the_horizon_is_absorbed_and_counted() {
+    use caustix::emitter::collimated::{Collimated, CrossSection};
+    use caustix::scattering::{Frame, Quantity};
+    let angles = [vec![70.0], vec![0.0], steps(0.0, 60.0, 10.0), steps(0.0, 360.0, 30.0)];
+    let data = lobe((Quantity::Reflection, Frame::Specular), angles, 1, |_, _, _, polar, _| {
+        2.0 * (-polar / 20.0f64).exp()
+    });
+    let table = ScatterTable::new("grazing", vec![data], vec![]).unwrap();
+    let bsdf = tabulated(&table, &Options::default());
+    let Bsdf::Tabulated(t) = &bsdf else { unreachable!() };
+    let wi = tabulated_support::incidence(85.0, 30.0);
+    let (n, degree) = (900, std::f64::consts::PI / 180.0);
+    let mut above = 0.0;
+    for i in 0..n {
+        let theta = (f64::from(i) + 0.5) * 90.0 / f64::from(n);
+        let ring: f64 = (0..n)
+            .map(|j| {
+                let wo = tabulated_support::incidence(theta, (f64::from(j) + 0.5) * 360.0 / f64::from(n));
+                t.eval(true, wi, wo)[0]
+            })
+            .sum();
+        above += ring * (theta * degree).sin() * (theta * degree).cos();
+    }
+    above *= 90.0 * 360.0 * degree * degree / f64::from(n * n);
+    let below = t.albedo(true, wi)[0] - above;
+    assert!(below > 0.03 && above > 0.1, "{below} {above}");
+    let across = DVec3::Z.cross(wi).normalize() * 0.1;
+    let section = CrossSection::Disc(across, wi.cross(across));
+    let beam = Collimated { centre: 4.0 * wi, direction: -wi, section, flux_lm: 100.0 };
+    let plate = Rectangle::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0).unwrap();
+    let scene = Scene::new(SceneParts {
+        surfaces: vec![surface("plate", Shape::Rectangle(plate), bsdf)],
+        emitters: vec![("beam".into(), Emitter::Collimated(beam))],
+        ..SceneParts::default()
+    })
+    .unwrap();
+    let outcome = run(&scene, Sequence::Independent, 1 << 18, 4, 5);
+    let photons = outcome.photons as f64;
+    for (count, part) in [(outcome.census.exceptions.below_horizon, below), (outcome.ledger.escaped, above)] {
+        let z = (count as f64 - photons * part) / (photons * part * (1.0 - part)).sqrt();
+        println!("{:.5} of the photons, expected {part:.5}: z = {z:.2}", count as f64 / photons);
+        assert!(normal_p(z) > SIGNIFICANCE);
+    }
+    assert_eq!(outcome.ledger.absorbed[0] + outcome.ledger.escaped, outcome.photons);
+}
+
 #[test]
 fn the_account_of_coordinates_counts_what_tables_draw() {
     use caustix::run::{Algorithm, Plan, Settings, trace};

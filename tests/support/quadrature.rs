@@ -33,6 +33,12 @@ impl Gauss {
         half * self.nodes.iter().zip(&self.weights).map(|(x, w)| w * f(middle + half * x)).sum::<f64>()
     }
 
+    /// (x, weight) of the rule on [a, b].
+    pub fn points(&self, a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+        self.nodes.iter().zip(&self.weights).map(move |(x, w)| (middle + half * x, half * w))
+    }
+
     /// Integral over consecutive panels between these edges.
     pub fn over_panels(&self, edges: &[f64], mut f: impl FnMut(f64) -> f64) -> f64 {
         edges.windows(2).map(|e| self.integrate(e[0], e[1], &mut f)).sum()

@@ -1,6 +1,9 @@
-//! FRED and Speos text tables: just enough to compare the same samples in several formats.
+//! FRED and Speos text tables, just enough to compare the same samples in several formats; MERL files from formulas.
 
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
+
+use caustix::scattering::merl;
 
 /// The folder of real scattering files; `None`, with a line that says so, where CAUSTIX_TEST_DATA is not set.
 pub fn real_folder() -> Option<PathBuf> {
@@ -74,4 +77,26 @@ pub fn read_speos(path: &Path) -> Speos {
     }
     assert_eq!(blocks.len(), count);
     Speos { incidences, percent, blocks }
+}
+
+/// The bytes of a MERL file whose bins hold f(theta_h, theta_d, bin of theta_d): red, green, blue in 1/sr; angles in radians.
+pub fn merl_file(f: impl Fn(f64, f64, usize) -> [f64; 3]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(merl::FILE_BYTES);
+    for count in [90u32, 90, 180] {
+        bytes.extend(count.to_le_bytes());
+    }
+    let scales = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
+    let degree = PI / 180.0;
+    for channel in 0..3 {
+        for h in 0..90 {
+            let x = (f64::from(h) + 0.5) / 90.0;
+            for d in 0..90 {
+                let rgb = f(0.5 * PI * x * x, (f64::from(d) + 0.5) * degree, d as usize);
+                for _ in 0..180 {
+                    bytes.extend((rgb[channel] / scales[channel]).to_le_bytes());
+                }
+            }
+        }
+    }
+    bytes
 }

@@ -218,6 +218,20 @@ pub fn cases() -> Vec<Case> {
             )],
         },
         Case {
+            name: "pole cells",
+            lobes: vec![lobe(
+                RS,
+                [vec![0.0, 45.0, 89.0], iso(), steps(0.0, 180.0, 20.0), steps(0.0, 360.0, 40.0)],
+                1,
+                // About the specular direction and, at grazing incidence, about where the light comes from.
+                |_, _, _, polar, azimuth| match polar {
+                    0.0 => 1.5,
+                    160.0 => 0.8 + 0.6 * azimuth.to_radians().sin(),
+                    _ => 0.0,
+                },
+            )],
+        },
+        Case {
             name: "1e12 range",
             lobes: vec![lobe(
                 R,
