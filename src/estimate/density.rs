@@ -1,9 +1,33 @@
 //! Density estimation: luminance from the photons about a point, with its spread over replicates and its bias.
+//!
+//! The luminance towards the eye is the sum over photons near of f(wi, wo) w photon_lm K(d), f the surface's BSDF, w the photon's
+//! weight and K a kernel of integral 1 over the part of the surface within the ball ([`super::footprint`]). Photons arriving are
+//! flux per area already, so no cosine appears (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
+
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit};
+use crate::scene::camera::{Bandwidth, CameraSpec, Kernel};
 use crate::tally::photon_map::{Photon, PhotonMap};
+use crate::units::LUMINANCE_OF_RGB;
+
+use super::bandwidth::{self, Chosen};
+use super::footprint::{Footprint, Footprints};
+use super::kernel::disc_m2;
+use super::replicates::FEWEST_HITS;
+
+/// The second bandwidth, in units of the first: twice the area.
+pub const SECOND: f64 = std::f64::consts::SQRT_2;
+
+/// What the difference between the two bandwidths is multiplied with for the bias of the narrower: exact for a bias that grows
+/// as the radius (at an edge), 1 / (sqrt 2 - 1); too large for one that grows as its square (where the density is smooth), 1.
+pub const BIAS_PER_DIFFERENCE: f64 = 1.0 / (SECOND - 1.0);
+
+/// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker: Progressive Photon
+/// Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
+pub const PROGRESSIVE_ALPHA: f64 = 2.0 / 3.0;
 
 /// What is gathered for one pixel: sums over its samples. `C` channels: 1 or 3.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,43 +35,167 @@ pub struct Gathered<const C: usize> {
     /// Luminance by channel, cd/m2.
     pub value: [f64; C],
     /// The same at the second bandwidth, from which the bias is told.
-    pub wide: [f64; C],
+    pub second: [f64; C],
     /// Luminance (Y) that each replicate's photons make; they add up to that of `value`.
     pub by_replicate: Vec<f64>,
+    /// Standard error (Y) owed to places with fewer than ten photons, whose spread says nothing: that of (photons + 1).
+    pub sparse: f64,
+    /// Bias (Y) that no bandwidth tells: that of the factor k - 1 of k nearest under points that are not independent.
+    pub nearest_bias: f64,
+    /// Kernel heights (1/m2) at both bandwidths by replicate, of the gather in hand.
+    heights: Vec<[f64; 2]>,
+    /// Neighbours found, of the gather in hand.
+    found: Vec<(f64, u32)>,
 }
 
 impl<const C: usize> Gathered<C> {
     /// Nothing, of this many replicates.
     pub fn new(replicates: usize) -> Self {
-        Self { value: [0.0; C], wide: [0.0; C], by_replicate: vec![0.0; replicates] }
+        Self {
+            value: [0.0; C],
+            second: [0.0; C],
+            by_replicate: vec![0.0; replicates],
+            sparse: 0.0,
+            nearest_bias: 0.0,
+            heights: Vec::new(),
+            found: Vec::new(),
+        }
     }
 
     /// Nothing again.
     pub fn clear(&mut self) {
         self.value = [0.0; C];
-        self.wide = [0.0; C];
+        self.second = [0.0; C];
         self.by_replicate.fill(0.0);
+        self.sparse = 0.0;
+        self.nearest_bias = 0.0;
     }
+
+    /// Estimated size of the bias of `value`'s luminance, cd/m2: [`BIAS_PER_DIFFERENCE`] times what the second bandwidth
+    /// makes of it.
+    pub fn bias(&self) -> f64 {
+        (luminance(&self.second) - luminance(&self.value)).abs() * BIAS_PER_DIFFERENCE + self.nearest_bias
+    }
+
+    /// Standard error of `value`'s luminance as the photons have it, given the bandwidth, cd/m2: from the spread of the
+    /// replicates, and no less than that of (photons + 1) where there were hardly any. `None` for one replicate.
+    pub fn standard_error(&self) -> Option<f64> {
+        let n = self.by_replicate.len();
+        if n < 2 {
+            return None;
+        }
+        let mean = self.by_replicate.iter().sum::<f64>() / n as f64;
+        let squares = self.by_replicate.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>();
+        let variance = n as f64 / (n - 1) as f64 * squares;
+        Some((variance + self.sparse * self.sparse).sqrt())
+    }
+}
+
+/// Y of linear sRGB; of one channel, itself.
+#[inline(always)]
+pub fn luminance<const C: usize>(channels: &[f64; C]) -> f64 {
+    if C == LUMINANCE_OF_RGB.len() {
+        channels.iter().zip(LUMINANCE_OF_RGB).map(|(v, y)| v * y).sum()
+    } else {
+        channels.iter().sum()
+    }
+}
+
+/// How densities are made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// Which photons count.
+    pub bandwidth: Bandwidth,
+    /// How they are weighted.
+    pub kernel: Kernel,
+    /// Replicates of the run.
+    pub replicates: u32,
+}
+
+impl Choice {
+    /// As a camera asks for it.
+    pub fn of(camera: &CameraSpec, replicates: u32) -> Self {
+        Self { bandwidth: camera.bandwidth, kernel: camera.kernel, replicates }
+    }
+}
+
+/// Which photons about a point count.
+#[derive(Debug, Clone)]
+enum Reach {
+    /// All within this radius (m) by replicate; one entry where it is the same for all.
+    Radii(Vec<f64>),
+    /// This many nearest; and a radius (m) to begin the search with.
+    Nearest(usize, f64),
 }
 
 /// A photon map with a bandwidth.
 #[derive(Debug)]
 pub struct Density<'m, const C: usize> {
-    geometry: &'m Geometry,
+    footprints: Arc<Footprints<'m>>,
     map: &'m PhotonMap<C>,
     /// Flux of one photon, lm.
     photon_lm: f64,
-    radius_m: f64,
+    kernel: Kernel,
+    reach: Reach,
+    chosen: Option<Chosen>,
 }
 
 impl<'m, const C: usize> Density<'m, C> {
-    /// All photons within this radius.
+    /// A density of this map; `photon_lm` is the flux of one photon, lm.
+    pub fn new(geometry: &'m Geometry, map: &'m PhotonMap<C>, photon_lm: f64, choice: Choice) -> Self {
+        Self::on(Arc::new(Footprints::new(geometry)), map, photon_lm, choice)
+    }
+
+    /// The same on surfaces that another density has prepared ([`Density::footprints`]).
+    pub fn on(
+        footprints: Arc<Footprints<'m>>,
+        map: &'m PhotonMap<C>,
+        photon_lm: f64,
+        choice: Choice,
+    ) -> Self {
+        let mut chosen = None;
+        let reach = match choice.bandwidth {
+            Bandwidth::Radius(radius_m) => Reach::Radii(vec![radius_m]),
+            Bandwidth::Progressive(radius_m) => Reach::Radii(progressive(radius_m, choice.replicates)),
+            Bandwidth::Nearest(k) => Reach::Nearest(k as usize, map.built_for_m()),
+            Bandwidth::Automatic => {
+                let found = bandwidth::choose(&footprints, map, choice.kernel, choice.replicates, 1.0);
+                let radius_m = found.radius_m;
+                chosen = Some(found);
+                Reach::Radii(vec![radius_m])
+            }
+        };
+        Self { footprints, map, photon_lm, kernel: choice.kernel, reach, chosen }
+    }
+
+    /// All photons within this radius, m.
     pub fn fixed(geometry: &'m Geometry, map: &'m PhotonMap<C>, photon_lm: f64, radius_m: f64) -> Self {
-        Self { geometry, map, photon_lm, radius_m }
+        let choice =
+            Choice { bandwidth: Bandwidth::Radius(radius_m), kernel: Kernel::default(), replicates: 1 };
+        Self::new(geometry, map, photon_lm, choice)
+    }
+
+    /// The surfaces as prepared for this density.
+    pub fn footprints(&self) -> Arc<Footprints<'m>> {
+        Arc::clone(&self.footprints)
+    }
+
+    /// What the automatic bandwidth was chosen by; `None` where the scene names one.
+    pub fn chosen(&self) -> Option<&Chosen> {
+        self.chosen.as_ref()
+    }
+
+    /// The (first) radius, m; `None` for k nearest.
+    pub fn radius_m(&self) -> Option<f64> {
+        match &self.reach {
+            Reach::Radii(radii) => radii.first().copied(),
+            Reach::Nearest(..) => None,
+        }
     }
 
     /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel, arrived on the
-    /// front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered.
+    /// front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered. Once more it is asked, for light
+    /// along the normal, where there are too few photons to tell an error from them.
     pub fn gather(
         &self,
         at: &Hit,
@@ -55,15 +203,154 @@ impl<'m, const C: usize> Density<'m, C> {
         mut value_of: impl FnMut(DVec3, bool) -> [f64; C],
         into: &mut Gathered<C>,
     ) {
-        let _ = self.geometry;
-        let per_area = self.photon_lm / (std::f64::consts::PI * self.radius_m * self.radius_m);
-        self.map.within(at.position, self.radius_m, |photon: &Photon<C>, _| {
-            let f = value_of(photon.direction(), photon.is_front());
-            for c in 0..C {
-                let l = weight[c] * f[c] * f64::from(photon.weight[c]) * per_area;
-                into.value[c] += l;
-                into.wide[c] += l;
+        let footprint = self.footprints.at(at);
+        let mut heights = std::mem::take(&mut into.heights);
+        let mut found = std::mem::take(&mut into.found);
+        heights.clear();
+        let (hits, one_photon) = match &self.reach {
+            Reach::Radii(radii) => {
+                for &radius_m in radii {
+                    heights.push(self.heights(&footprint, [radius_m, SECOND * radius_m]));
+                }
+                self.sum_within(&footprint, radii, &heights, at, weight, &mut value_of, into)
             }
-        });
+            Reach::Nearest(k, guess_m) => {
+                self.sum_nearest((*k, *guess_m), &footprint, &mut found, at, weight, &mut value_of, into)
+            }
+        };
+        if hits < FEWEST_HITS {
+            let down = if at.front { -at.normal } else { at.normal };
+            let f = value_of(down, at.front);
+            let one: [f64; C] = std::array::from_fn(|c| weight[c] * f[c] * self.photon_lm * one_photon);
+            into.sparse += luminance(&one).abs() * ((hits + 1) as f64).sqrt();
+        }
+        into.heights = heights;
+        into.found = found;
     }
+
+    /// 1 / (pi r^2) over what of the kernel lies on the surface, 1/m2, for two radii.
+    #[inline]
+    fn heights(&self, footprint: &Footprint<'_>, radii_m: [f64; 2]) -> [f64; 2] {
+        radii_m.map(|r| 1.0 / (disc_m2(r) * footprint.integral(self.kernel, r)))
+    }
+
+    /// All photons within a radius. Gives their number and what one photon would be, 1/m2.
+    #[inline]
+    #[allow(clippy::too_many_arguments)]
+    fn sum_within(
+        &self,
+        footprint: &Footprint<'_>,
+        radii: &[f64],
+        heights: &[[f64; 2]],
+        at: &Hit,
+        weight: [f64; C],
+        value_of: &mut impl FnMut(DVec3, bool) -> [f64; C],
+        into: &mut Gathered<C>,
+    ) -> (u64, f64) {
+        let (Some(&widest), Some(&[height, _])) = (radii.first(), heights.first()) else { return (0, 0.0) };
+        let mut hits = 0;
+        let same = radii.len() == 1;
+        self.map.within(at.position, SECOND * widest, |photon, d2| {
+            let set = if same { 0 } else { photon.replicate().min(radii.len() - 1) };
+            let radius = radii[set];
+            let t = d2 / (radius * radius);
+            if t >= SECOND * SECOND || !footprint.holds(photon.primitive, || self.map.position(photon)) {
+                return;
+            }
+            hits += u64::from(t < 1.0);
+            self.add(photon, t, heights[set], weight, value_of, into);
+        });
+        (hits, height)
+    }
+
+    /// The k nearest photons. That at the distance r_k itself is left out: given r_k the k - 1 within are evenly spread, so
+    /// (k - 1) / (pi r_k^2) is unbiased for independent photons, with any kernel.
+    #[inline]
+    #[allow(clippy::too_many_arguments)]
+    fn sum_nearest(
+        &self,
+        (k, guess_m): (usize, f64),
+        footprint: &Footprint<'_>,
+        found: &mut Vec<(f64, u32)>,
+        at: &Hit,
+        weight: [f64; C],
+        value_of: &mut impl FnMut(DVec3, bool) -> [f64; C],
+        into: &mut Gathered<C>,
+    ) -> (u64, f64) {
+        let twice = k.saturating_mul(2);
+        let holds = |p: &Photon<C>| footprint.holds(p.primitive, || self.map.position(p));
+        self.map.nearest(at.position, twice, guess_m, holds, found);
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Positions are no finer than the frame's steps, and no neighbourhood is.
+        let least = self.map.frame().steps_m().max_element();
+        let Some(&(farthest2, _)) = found.last() else {
+            let area = self.footprints.geometry().surfaces()[at.surface.0 as usize].shape.area();
+            return (0, 1.0 / area);
+        };
+        let kth2 = found[k.clamp(1, found.len()) - 1].0;
+        let first = kth2.sqrt().max(least);
+        let second =
+            if found.len() == twice { farthest2.sqrt() } else { farthest2.sqrt().max(SECOND * first) };
+        let second = second.max(least);
+        let heights = self.heights(footprint, [first, second]);
+        let before = luminance(&into.value);
+        let mut hits = 0;
+        for &(d2, place) in found.iter() {
+            let photon = &self.map.photons()[place as usize];
+            let (t1, t2) = (d2 / (first * first), d2 / (second * second));
+            hits += u64::from(t1 < 1.0);
+            self.add_two(photon, [t1, t2], heights, weight, value_of, into);
+        }
+        into.nearest_bias += (luminance(&into.value) - before).abs() / k.max(1) as f64;
+        (hits, heights[0])
+    }
+
+    /// One photon at d^2 / r^2 = t, the second radius being [`SECOND`] times the first.
+    #[inline(always)]
+    fn add(
+        &self,
+        photon: &Photon<C>,
+        t: f64,
+        heights: [f64; 2],
+        weight: [f64; C],
+        value_of: &mut impl FnMut(DVec3, bool) -> [f64; C],
+        into: &mut Gathered<C>,
+    ) {
+        self.add_two(photon, [t, t / (SECOND * SECOND)], heights, weight, value_of, into);
+    }
+
+    #[inline(always)]
+    fn add_two(
+        &self,
+        photon: &Photon<C>,
+        t: [f64; 2],
+        heights: [f64; 2],
+        weight: [f64; C],
+        value_of: &mut impl FnMut(DVec3, bool) -> [f64; C],
+        into: &mut Gathered<C>,
+    ) {
+        let f = value_of(photon.direction(), photon.is_front());
+        let brought: [f64; C] =
+            std::array::from_fn(|c| weight[c] * f[c] * f64::from(photon.weight[c]) * self.photon_lm);
+        let at = |i: usize| if t[i] < 1.0 { heights[i] * self.kernel.shape(t[i]) } else { 0.0 };
+        let [first, second] = [at(0), at(1)];
+        for c in 0..C {
+            into.value[c] += brought[c] * first;
+            into.second[c] += brought[c] * second;
+        }
+        if let Some(sum) = into.by_replicate.get_mut(photon.replicate()) {
+            *sum += luminance(&brought) * first;
+        }
+    }
+}
+
+/// The radius (m) of every replicate.
+fn progressive(radius_m: f64, replicates: u32) -> Vec<f64> {
+    let mut square = radius_m * radius_m;
+    let mut radii = Vec::with_capacity(replicates.min(1 << 16) as usize);
+    for i in 1..=replicates.clamp(1, 1 << 16) {
+        radii.push(square.sqrt());
+        square *= (f64::from(i) + PROGRESSIVE_ALPHA) / (f64::from(i) + 1.0);
+    }
+    radii
 }

@@ -1,4 +1,8 @@
-//! From sums to illuminance and standard errors.
+//! From sums to illuminance and standard errors; from photons to luminance and its bias.
 
+pub mod bandwidth;
 pub mod density;
+pub mod faces;
+pub mod footprint;
+pub mod kernel;
 pub mod replicates;

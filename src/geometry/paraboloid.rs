@@ -115,6 +115,29 @@ impl Paraboloid {
         self.vertex + self.x * p.x + self.y * p.y + self.axis * z
     }
 
+    /// The bowl as triangles with their corners on it, outward as it is itself: `rings` rings of equal width, and three times
+    /// as many sectors.
+    pub(crate) fn facets(&self, rings: u32) -> Vec<[DVec3; 3]> {
+        let sectors = 3 * rings.max(1);
+        let point = |i: u32, j: u32| {
+            let radius = self.radius * f64::from(i) / f64::from(rings);
+            let phi = std::f64::consts::TAU * f64::from(j % sectors) / f64::from(sectors);
+            let across = self.x * libm::cos(phi) + self.y * libm::sin(phi);
+            self.project(self.vertex + across * radius)
+        };
+        let mut facets = Vec::new();
+        for i in 0..rings {
+            for j in 0..sectors {
+                let [a, b, c, d] = [point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)];
+                facets.push([a, b, c]);
+                if i > 0 {
+                    facets.push([a, c, d]);
+                }
+            }
+        }
+        facets
+    }
+
     /// Rounding bound (m) of a distance along this ray, where it is not grazing.
     pub(crate) fn bound(&self, ray: &Ray) -> f64 {
         let size = ray.origin.abs().max_element().max(self.vertex.abs().max_element());

@@ -47,10 +47,46 @@ impl Frame {
         ]
     }
 
+    /// Length of a step along each axis, m.
+    #[inline]
+    pub fn steps_m(&self) -> DVec3 {
+        self.step
+    }
+
+    /// The position of the integers 0, m.
+    pub fn low(&self) -> DVec3 {
+        self.low
+    }
+
+    /// The frame of these numbers, as [`Frame::low`] and [`Frame::steps_m`] give them.
+    pub fn from_steps(low: DVec3, step: DVec3) -> Self {
+        Self { low, step }
+    }
+
     /// The position of integers.
     #[inline]
     pub fn position(&self, cell: [u32; 3]) -> DVec3 {
         self.low + self.step * DVec3::new(f64::from(cell[0]), f64::from(cell[1]), f64::from(cell[2]))
+    }
+
+    /// Least and greatest integers that a position within `radius_m` of `centre` can have.
+    #[inline]
+    pub(super) fn cells_about(&self, centre: DVec3, radius_m: f64) -> ([u32; 3], [u32; 3]) {
+        let (centre, low, step) = (centre.to_array(), self.low.to_array(), self.step.to_array());
+        // A step more on either side than the ball needs covers rounding. The conversion saturates.
+        let of = |k: usize, offset: f64, room: f64, without: u32| {
+            if step[k] > 0.0 { ((centre[k] - low[k] + offset) / step[k] + room) as u32 } else { without }
+        };
+        (
+            std::array::from_fn(|k| of(k, -radius_m, -2.0, 0)),
+            std::array::from_fn(|k| of(k, radius_m, 2.0, u32::MAX)),
+        )
+    }
+
+    /// A distance that no position of the frame is farther from `point` than, m.
+    pub(super) fn farthest_m(&self, point: DVec3) -> f64 {
+        let high = self.position([u32::MAX; 3]);
+        (point - self.low).abs().max((point - high).abs()).length() * (1.0 + 1e-12)
     }
 }
 
