@@ -20,9 +20,9 @@ const BEYOND_CUT: f64 = 3.354_626_279_025_118_4e-4;
 pub fn offset(filter: Filter, u: [f64; 2]) -> [f64; 2] {
     match filter {
         Filter::Box => u.map(|u| u - 0.5),
-        Filter::Tent => u.map(|u| {
-            if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).sqrt() }
-        }),
+        Filter::Tent => {
+            u.map(|u| if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 * (1.0 - u)).sqrt() })
+        }
         Filter::Gaussian => {
             let rest = 1.0 - u[0] * (1.0 - BEYOND_CUT);
             let radius = SIGMA * (-2.0 * libm::log(rest)).max(0.0).sqrt();

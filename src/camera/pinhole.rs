@@ -144,7 +144,10 @@ fn check(spec: &CameraSpec) -> Result<()> {
         );
     }
     if !(spec.fov_deg > 0.0 && spec.fov_deg < 180.0) {
-        return fail(format!("a camera of {} degrees", spec.fov_deg), "an angle above 0 and below 180 degrees");
+        return fail(
+            format!("a camera of {} degrees", spec.fov_deg),
+            "an angle above 0 and below 180 degrees",
+        );
     }
     if spec.pixels.contains(&0) || spec.samples == 0 {
         let [columns, rows] = spec.pixels;
@@ -154,7 +157,10 @@ fn check(spec: &CameraSpec) -> Result<()> {
         );
     }
     if !(spec.lens_radius_m >= 0.0 && spec.lens_radius_m.is_finite()) {
-        return fail(format!("a lens of radius {} m", spec.lens_radius_m), "a finite radius, 0 for a pinhole");
+        return fail(
+            format!("a lens of radius {} m", spec.lens_radius_m),
+            "a finite radius, 0 for a pinhole",
+        );
     }
     if spec.lens_radius_m > 0.0 && !(spec.focus_m > 0.0 && spec.focus_m.is_finite()) {
         return fail(format!("a lens in focus at {} m", spec.focus_m), "a positive distance");

@@ -59,11 +59,14 @@ impl<'m, const C: usize> Density<'m, C> {
         let per_area = self.photon_lm / (std::f64::consts::PI * self.radius_m * self.radius_m);
         self.map.within(at.position, self.radius_m, |photon: &Photon<C>, _| {
             let f = value_of(photon.direction(), photon.is_front());
+            let mut y = 0.0;
             for c in 0..C {
                 let l = weight[c] * f[c] * f64::from(photon.weight[c]) * per_area;
                 into.value[c] += l;
                 into.wide[c] += l;
+                y += if C == 1 { l } else { crate::units::LUMINANCE_OF_RGB[c] * l };
             }
+            into.by_replicate[photon.replicate()] += y;
         });
     }
 }
