@@ -10,18 +10,21 @@
 //! is given in `scene`.
 
 pub mod dielectric;
+pub mod eye;
 pub mod lambertian;
 pub mod mirror;
 pub mod reference;
 pub mod reflectance;
 pub mod tabulated;
 pub mod throughput;
+pub mod value;
 
 use glam::DVec3;
 
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use eye::EyeWeight;
 pub use reference::Reference;
 pub use reflectance::Reflectance;
 pub use tabulated::Tabulated;

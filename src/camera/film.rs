@@ -1,6 +1,8 @@
-//! Pixels: luminance, standard error, bias.
+//! Pixels: luminance, standard error, bias; and the sums that they come from.
 
-/// A picture being made. `C` channels: 1 (luminance) or 3 (linear sRGB whose Y is luminance), cd/m2.
+use crate::error::{Diagnostic, Kind, Result};
+
+/// A finished picture. `C` channels: 1 (luminance) or 3 (linear sRGB whose Y is luminance), cd/m2.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Film<const C: usize> {
     /// Columns and rows.
@@ -11,4 +13,191 @@ pub struct Film<const C: usize> {
     pub standard_error: Vec<f64>,
     /// Estimated bias of the luminance, cd/m2.
     pub bias: Vec<f64>,
+}
+
+/// Most bytes that a picture and its sums may take while it is made.
+pub const MOST_PICTURE_BYTES: u64 = 1 << 30;
+
+impl<const C: usize> Film<C> {
+    /// Bytes that a picture of so many columns and rows takes while it is made: its sums and itself.
+    pub fn memory_bytes(pixels: [u32; 2]) -> u64 {
+        let padded = pixels.map(|n| u64::from(n).div_ceil(u64::from(TILE)) * u64::from(TILE));
+        let of_sums = size_of::<PixelSums<C>>() as u64;
+        let of_film = (size_of::<[f64; C]>() + 2 * size_of::<f64>()) as u64;
+        let number = u128::from(padded[0]) * u128::from(padded[1]);
+        u64::try_from(number * u128::from(of_sums + of_film)).unwrap_or(u64::MAX)
+    }
+}
+
+/// Columns and rows of a tile: what one task renders.
+pub const TILE: u32 = 16;
+pub(super) const TILE_PIXELS: usize = (TILE * TILE) as usize;
+
+/// Sets that a pixel's samples are divided into: their spread is the error of the eye's sampling.
+pub const SETS: u32 = 4;
+
+/// What is kept of a pixel from pass to pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PixelSums<const C: usize> {
+    /// Luminance by channel.
+    pub value: [f64; C],
+    /// Estimated bias of the luminance.
+    pub bias: f64,
+    /// Luminance that each set of samples makes.
+    pub by_set: [f64; SETS as usize],
+    /// Of the luminance that each finished replicate's photons make: sum, and sum of squares.
+    pub photons: f64,
+    pub photons_square: f64,
+    /// Luminance from the photons of the replicate that is not finished.
+    pub open: f64,
+}
+
+impl<const C: usize> PixelSums<C> {
+    pub(super) const NOTHING: Self = Self {
+        value: [0.0; C],
+        bias: 0.0,
+        by_set: [0.0; SETS as usize],
+        photons: 0.0,
+        photons_square: 0.0,
+        open: 0.0,
+    };
+
+    /// A replicate's photons, or a part of them, make this luminance.
+    pub(super) fn add_replicate(&mut self, luminance: f64, finished: bool) {
+        self.open += luminance;
+        if finished {
+            self.photons += self.open;
+            self.photons_square += self.open * self.open;
+            self.open = 0.0;
+        }
+    }
+
+    /// Square of the standard error of the luminance; NaN where a single replicate or a single sample says nothing.
+    fn variance(&self, replicates: u32, sets: u32) -> f64 {
+        let (r, s) = (f64::from(replicates), f64::from(sets));
+        // The value is the sum over replicates, the mean over sets.
+        let of_photons = match replicates {
+            0 => 0.0,
+            1 => f64::NAN,
+            _ => (r * self.photons_square - self.photons * self.photons).max(0.0) / (r - 1.0),
+        };
+        let of_eye = if sets < 2 {
+            f64::NAN
+        } else {
+            let sets = &self.by_set[..sets as usize];
+            let mean = sets.iter().sum::<f64>() / s;
+            sets.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (s * (s - 1.0))
+        };
+        of_photons + of_eye
+    }
+}
+
+/// A picture in the making: passes add to it ([`super::render`]), [`Self::finish`] makes the picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sums<const C: usize> {
+    pixels: [u32; 2],
+    /// Tile by tile, each row by row; tiles at the right and lower end are whole, too.
+    pub(super) tiles: Vec<PixelSums<C>>,
+    /// Replicates whose photons are all in.
+    pub(super) replicates: u32,
+    /// Sets of samples that there are.
+    pub(super) sets: u32,
+}
+
+impl<const C: usize> Sums<C> {
+    /// Nothing yet, of so many columns and rows.
+    ///
+    /// # Errors
+    /// A picture without pixels; one of more than [`MOST_PICTURE_BYTES`].
+    pub fn new(pixels: [u32; 2]) -> Result<Self> {
+        let bytes = Film::<C>::memory_bytes(pixels);
+        let [columns, rows] = pixels;
+        if bytes > MOST_PICTURE_BYTES || bytes == 0 {
+            let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+            return Err(Diagnostic::new(
+                Kind::Limit,
+                format!("a picture of {columns} x {rows} pixels, which takes {} MiB", mib(bytes)),
+                format!("at least one pixel, and at most {} MiB", mib(MOST_PICTURE_BYTES)),
+            )
+            .hint("fewer pixels; several cameras of a part of the view each make a larger picture"));
+        }
+        let [across, down] = pixels.map(|n| n.div_ceil(TILE) as usize);
+        let tiles = vec![PixelSums::NOTHING; across * down * TILE_PIXELS];
+        Ok(Self { pixels, tiles, replicates: 0, sets: 0 })
+    }
+
+    /// Columns and rows.
+    pub fn pixels(&self) -> [u32; 2] {
+        self.pixels
+    }
+
+    /// Replicates whose photons are all in.
+    pub fn replicates(&self) -> u32 {
+        self.replicates
+    }
+
+    /// Column and row of the first pixel of a tile.
+    pub(super) fn corner(pixels: [u32; 2], tile: usize) -> [u32; 2] {
+        let across = pixels[0].div_ceil(TILE) as usize;
+        [(tile % across) as u32 * TILE, (tile / across) as u32 * TILE]
+    }
+
+    fn at(&self, column: u32, row: u32) -> &PixelSums<C> {
+        let across = self.pixels[0].div_ceil(TILE);
+        let tile = (row / TILE * across + column / TILE) as usize;
+        &self.tiles[tile * TILE_PIXELS + (row % TILE * TILE + column % TILE) as usize]
+    }
+
+    /// The picture of all passes so far.
+    ///
+    /// Standard error^2 = spread of the replicates' sums + spread of the sets of samples: that of the photons for these samples,
+    /// and that of the samples for these photons.
+    pub fn finish(&self) -> Film<C> {
+        let [columns, rows] = self.pixels;
+        let number = columns as usize * rows as usize;
+        let mut film = Film {
+            pixels: self.pixels,
+            value: Vec::with_capacity(number),
+            standard_error: Vec::with_capacity(number),
+            bias: Vec::with_capacity(number),
+        };
+        for row in 0..rows {
+            for column in 0..columns {
+                let sums = self.at(column, row);
+                film.value.push(sums.value);
+                film.standard_error.push(sums.variance(self.replicates, self.sets).sqrt());
+                film.bias.push(sums.bias);
+            }
+        }
+        film
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_told_before_it_is_taken() {
+        assert!(Sums::<1>::new([1, 1]).is_ok());
+        assert!(Sums::<3>::new([1920, 1080]).is_ok());
+        for pixels in [[8192, 8192], [u32::MAX, u32::MAX], [0, 5]] {
+            let error = Sums::<3>::new(pixels).unwrap_err();
+            assert_eq!(error.kind(), Kind::Limit);
+        }
+        assert!(Sums::<1>::new([8192, 8192]).unwrap_err().to_string().contains("MiB"));
+    }
+
+    #[test]
+    fn the_error_is_that_of_replicates_and_of_sets() {
+        let mut sums = PixelSums::<1>::NOTHING;
+        for (part, finished) in [(1.0, false), (2.0, true), (5.0, true), (4.0, true)] {
+            sums.add_replicate(part, finished);
+        }
+        sums.by_set = [11.0, 12.0, 13.0, 12.0];
+        // Sum of three with variance 1: 3. Mean of four with variance 2/3: 1/6.
+        assert!((sums.variance(3, 4) - (3.0 + 1.0 / 6.0)).abs() < 1e-14);
+        assert!(sums.variance(1, 4).is_nan() && sums.variance(3, 1).is_nan());
+        assert_eq!(PixelSums::<1>::NOTHING.variance(0, 4), 0.0);
+    }
 }

@@ -7,6 +7,7 @@
 //! is given in `scene`.
 
 pub mod collimated;
+pub mod direct;
 pub mod isotropic;
 pub mod panel;
 pub mod photometric;
@@ -23,6 +24,7 @@ use crate::sample::rejection::UniformMap;
 use crate::sequence::Points;
 
 pub use collimated::Collimated;
+pub use direct::DirectLight;
 pub use isotropic::Isotropic;
 pub use panel::Panel;
 pub use photometric::Photometric;

@@ -39,6 +39,28 @@ impl Panel {
         self.centre
     }
 
+    /// The normal of the lit side, unit.
+    #[inline]
+    pub fn aim(&self) -> DVec3 {
+        self.axes.z_axis
+    }
+
+    /// Width along aim x up and height along up, m.
+    #[inline]
+    pub fn size_m(&self) -> [f64; 2] {
+        self.size_m
+    }
+
+    /// x and y of a point of its plane, as [`Self::point`] counts them.
+    #[inline]
+    pub fn coordinates(&self, point: DVec3) -> [f64; 2] {
+        let from_centre = point - self.centre;
+        [
+            from_centre.dot(self.axes.x_axis) / (0.5 * self.size_m[0]),
+            from_centre.dot(self.axes.y_axis) / (0.5 * self.size_m[1]),
+        ]
+    }
+
     /// The point at x and y from the centre, each in halves of the size: -1 to 1.
     #[inline]
     pub fn point(&self, x: f64, y: f64) -> DVec3 {

@@ -216,7 +216,45 @@ impl<const LENIENT: bool> Visitor for Search<'_, LENIENT> {
     }
 }
 
+/// A search that ends at the first surface it finds.
+struct Blocked<'a>(Search<'a, false>);
+
+impl Visitor for Blocked<'_> {
+    #[inline(always)]
+    fn leaf(&mut self, block: &Block) {
+        self.0.block(block);
+        if self.0.best.is_some() {
+            // No box begins before it: the walk is over.
+            self.0.limit = -1.0;
+        }
+    }
+
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        self.0.limit
+    }
+}
+
 impl Geometry {
+    /// Whether anything stands between `origin` (m) and the point `distance` (m) away along the unit vector `direction`:
+    /// `nearest(..).t < distance`, sooner answered. `at` is where the ray starts, as for [`Self::nearest`], by whose rules
+    /// candidates count.
+    pub fn occluded(&self, origin: DVec3, direction: DVec3, distance: f64, at: &Whereabouts) -> bool {
+        if !at.behind().is_empty() {
+            // Whether a rim has to be looked for depends on what lies beyond.
+            return self.nearest(origin, direction, at, &mut 0).is_some_and(|hit| hit.t < distance);
+        }
+        let Some(ray) = Ray::new(origin, direction) else { return false };
+        let Some(boxes) = BoxRay::new(&ray, &self.normalisation) else { return false };
+        // `consider` takes what is not farther than the nearest so far.
+        let within = distance.next_down();
+        let mut search = Blocked(Search::new(self, (&ray, &boxes), at, None));
+        search.0.nearest_t = within;
+        search.0.limit = boxes.limit(within);
+        self.walk_tree(&boxes, &mut search);
+        search.0.best.is_some()
+    }
+
     /// The nearest hit of a ray from `origin` (m) along the unit vector `direction`.
     ///
     /// `at` says where the photon is: primitives just met, the sides it left them on, the closed surfaces it is
@@ -314,33 +352,37 @@ impl Geometry {
             }
             return;
         }
+        self.walk_tree(search.boxes, search);
+    }
+
+    #[inline(always)]
+    fn walk_tree<V: Visitor>(&self, boxes: &BoxRay, visitor: &mut V) {
         #[cfg(target_arch = "x86_64")]
         if self.avx2 {
             // SAFETY: `avx2` is set only where the processor was found to have it.
             #[allow(unsafe_code)]
             unsafe {
-                self.walk_avx2(search);
+                self.walk_avx2(boxes, visitor);
             }
             return;
         }
-        self.walk(search);
+        self.walk(boxes, visitor);
     }
 
     /// The walk compiled for AVX2. No fused operations: the same bits as without.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn walk_avx2<const LENIENT: bool>(&self, search: &mut Search<'_, LENIENT>) {
-        self.walk(search);
+    fn walk_avx2<V: Visitor>(&self, boxes: &BoxRay, visitor: &mut V) {
+        self.walk(boxes, visitor);
     }
 
     /// The stack holds 7 entries a level and one more; the tree's depth picks its size.
     #[inline(always)]
-    fn walk<const LENIENT: bool>(&self, search: &mut Search<'_, LENIENT>) {
-        let boxes = search.boxes;
+    fn walk<V: Visitor>(&self, boxes: &BoxRay, visitor: &mut V) {
         match self.tree.depth {
-            0..=9 => self.tree.walk::<64, _>(boxes, search),
-            10..=18 => self.tree.walk::<128, _>(boxes, search),
-            _ => self.tree.walk::<512, _>(boxes, search),
+            0..=9 => self.tree.walk::<64, _>(boxes, visitor),
+            10..=18 => self.tree.walk::<128, _>(boxes, visitor),
+            _ => self.tree.walk::<512, _>(boxes, visitor),
         }
     }
 

@@ -51,7 +51,14 @@ pub struct OwenPoints {
 impl OwenPoints {
     /// The points of this seed and replicate.
     pub fn new(seed: u64, replicate: u32) -> Self {
-        let scrambles = (0..LOW_DISCREPANCY_COORDINATES).map(|c| Scramble::new(seed, replicate, c)).collect();
+        Self::with_coordinates(seed, replicate, LOW_DISCREPANCY_COORDINATES)
+    }
+
+    /// The same points in their first few coordinates, those beyond from the counter hash: keys cost time where a set has
+    /// only a handful of points.
+    pub fn with_coordinates(seed: u64, replicate: u32, coordinates: u32) -> Self {
+        let low_discrepancy = 0..coordinates.min(LOW_DISCREPANCY_COORDINATES);
+        let scrambles = low_discrepancy.map(|c| Scramble::new(seed, replicate, c)).collect();
         Self { scrambles, beyond: IndependentPoints::new(seed, replicate) }
     }
 }

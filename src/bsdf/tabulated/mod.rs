@@ -20,6 +20,7 @@
 mod arrival;
 mod branch;
 mod energy;
+mod eye;
 mod layer;
 
 use std::sync::Arc;

@@ -1,0 +1,113 @@
+//! What an eye path carries: the part of the luminance ahead of it that reaches the eye.
+//!
+//! A mirror multiplies it by its reflectance; a dielectric chooses one of its two ways by the Fresnel reflectance and
+//! leaves it, but for the square of the indices ([`Dielectric::luminance_factor`]).
+
+use super::reflectance::{Reflectance, luminance};
+use super::throughput::Fate;
+use super::{Dielectric, Throughput};
+use crate::sample::coordinates::Chooser;
+
+/// Weights of red, green and blue.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EyeWeight {
+    weight: [f64; 3],
+}
+
+/// Luminance of the weight below which roulette begins.
+const ROULETTE_BELOW: f64 = 1.0 / 16.0;
+
+impl EyeWeight {
+    /// Of a path that begins.
+    pub const ONE: Self = Self { weight: [1.0; 3] };
+
+    /// Red, green, blue.
+    #[inline]
+    pub fn weight(&self) -> [f64; 3] {
+        self.weight
+    }
+
+    /// Multiplies all channels.
+    #[inline]
+    pub fn scale(&mut self, factor: f64) {
+        self.weight = self.weight.map(|w| w * factor);
+    }
+
+    /// Multiplies by channel; whether the path goes on. Of paths whose weight has become small, few go on with more: the mean
+    /// stays.
+    #[inline]
+    pub fn attenuate<C: Chooser>(&mut self, factor: [f64; 3], chooser: &mut C) -> bool {
+        for (w, f) in self.weight.iter_mut().zip(factor) {
+            *w *= f;
+        }
+        let y = luminance(self.weight);
+        if y >= ROULETTE_BELOW {
+            return true;
+        }
+        let q = y / ROULETTE_BELOW;
+        if !chooser.happens(q) {
+            return false;
+        }
+        self.scale(1.0 / q);
+        true
+    }
+}
+
+impl Throughput for EyeWeight {
+    #[inline]
+    fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
+        self.attenuate(reflectance.by_channel(), chooser)
+    }
+
+    /// An eye path ends where light is scattered.
+    #[inline]
+    fn scatter<C: Chooser>(&mut self, _: [f64; 3], _: bool, _: &mut C) -> Fate {
+        Fate::Ends
+    }
+
+    #[inline]
+    fn scattered(&mut self, _: [f64; 3], _: f64) {}
+}
+
+impl Dielectric {
+    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye path that goes
+    /// on `through` from the medium of index n_i, on the side `front`, sees that part of the luminance in n_t. (E. Veach, "Robust
+    /// Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2.)
+    #[inline]
+    pub fn luminance_factor(&self, front: bool) -> f64 {
+        let ratio = self.ior_outside / self.ior;
+        if front { ratio * ratio } else { 1.0 / (ratio * ratio) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::script::Script;
+
+    #[test]
+    fn mirrors_multiply_and_roulette_keeps_the_mean() {
+        let mut weight = EyeWeight::ONE;
+        let mut script = Script { events: vec![true, false], ..Script::default() };
+        let mirror = Reflectance::rgb([0.5, 0.25, 0.0]);
+        assert!(weight.reflect(&mirror, &mut script));
+        assert_eq!(weight.weight(), [0.5, 0.25, 0.0]);
+        assert!(script.asked.is_empty());
+        // Y = 0.2126/4 + 0.7152/16 = 0.0979, then 0.0377: below 1/16.
+        assert!(weight.reflect(&mirror, &mut script) && script.asked.is_empty());
+        assert!(weight.reflect(&mirror, &mut script));
+        assert_eq!(script.asked.len(), 1);
+        let chance = script.asked[0];
+        assert!((weight.weight()[0] * chance - 0.125).abs() < 1e-16);
+        assert!((luminance(weight.weight()) - ROULETTE_BELOW).abs() < 1e-16);
+        assert!(!weight.reflect(&mirror, &mut script));
+        assert!(!EyeWeight::ONE.reflect(&Reflectance::grey(0.0), &mut Script::default()));
+    }
+
+    #[test]
+    fn into_glass_the_eye_sees_luminance_divided_by_the_square_of_the_index() {
+        let glass = Dielectric { ior_outside: 1.0, ior: 1.5 };
+        assert!((glass.luminance_factor(true) - 1.0 / 2.25).abs() < 1e-15);
+        assert!((glass.luminance_factor(false) - 2.25).abs() < 1e-15);
+    }
+}
