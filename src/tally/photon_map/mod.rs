@@ -4,10 +4,12 @@
 //! preceded it: that light is direct, and the camera finds it by shadow rays.
 
 pub mod record;
+pub mod sink;
 
 use glam::DVec3;
 
 pub use record::{Frame, Photon};
+pub use sink::{Channels, PhotonSink, PhotonStore};
 
 /// Photons that can be asked for by place. `C` channels: 1 or 3.
 #[derive(Debug, Clone)]
