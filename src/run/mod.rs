@@ -4,6 +4,7 @@
 //! sum and the sum of squares over replicates are kept.
 
 pub mod algorithm;
+pub mod picture;
 pub mod plan;
 pub mod tracer;
 
