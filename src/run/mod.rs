@@ -4,6 +4,7 @@
 //! sum and the sum of squares over replicates are kept.
 
 pub mod algorithm;
+pub mod picture;
 pub mod plan;
 pub mod tracer;
 
@@ -131,6 +132,22 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
+    trace_by(
+        scene,
+        plan,
+        |tracer, end, receivers| tracer.trace(end, receivers, interrupt, progress),
+        interrupt,
+    )
+}
+
+/// The loop over replicates and their stages. `stage` takes a tracer on to this number of photons and adds what arrives to
+/// the receivers.
+fn trace_by(
+    scene: &Scene,
+    plan: &Plan,
+    mut stage: impl FnMut(&mut Tracer<'_>, u64, &Receivers<'_>) -> Result<Traced>,
+    interrupt: &AtomicBool,
+) -> Result<Outcome> {
     let started = Instant::now();
     let surfaces = scene.geometry.surfaces().len();
     let mut receivers = Receivers::new(&scene.geometry, &scene.receivers);
@@ -151,7 +168,7 @@ pub fn trace(
         let mut replica = Traced::new(scene);
         let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, plan.photons_per_replicate);
         for end in stages(plan, replicate) {
-            let traced = tracer.trace(end, &receivers, interrupt, progress)?;
+            let traced = stage(&mut tracer, end, &receivers)?;
             if !traced.complete {
                 outcome.stopped_by = StoppedBy::Interrupt;
                 break 'run;

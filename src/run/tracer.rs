@@ -12,6 +12,7 @@ use crate::sequence::owen::OwenPoints;
 use crate::sequence::sobol::SobolPoints;
 use crate::sequence::{Points, Sequence};
 use crate::tally::Receivers;
+use crate::transport::Sink;
 use crate::transport::attempts::advance;
 use crate::transport::parallel::{How, Traced, trace_range};
 
@@ -92,36 +93,67 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
-        self.algorithm.check_skipping(self.scene.emitters.is_single())?;
-        let how = How {
-            reuse: self.algorithm.variant.reuses(),
-            sampling: self.algorithm.sampling(),
-            interrupt,
-            progress,
-        };
-        let wanted = until.saturating_sub(self.photons);
-        let stage = Stage { scene: self.scene, how, receivers, attempts: self.attempts, wanted };
+        let how = self.how(interrupt, progress)?;
+        let stage = Stage { tracer: self, how, until, sink: || receivers.sink() };
         // A scene in colour is traced by one walk for all sequences, any other by a walk compiled for its own.
         let (traced, attempts) = if self.scene.is_coloured() {
             stage.carrying(&self.points.any()?, Rgb::WHITE)
         } else {
             self.points.provide(stage)?
         };
+        self.moved_on(until, attempts, traced)
+    }
+
+    /// The same with arrivals in a sink of any kind, by one walk for all sequences.
+    ///
+    /// # Errors
+    /// Those of [`Self::trace`].
+    pub fn trace_into<T: Throughput, S: Sink<T>>(
+        &mut self,
+        until: u64,
+        carried: T,
+        sink: impl Fn() -> S + Sync,
+        interrupt: &AtomicBool,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Result<Traced> {
+        let how = self.how(interrupt, progress)?;
+        let stage = Stage { tracer: self, how, until, sink };
+        let (traced, attempts) = stage.carrying(&self.points.any()?, carried);
+        self.moved_on(until, attempts, traced)
+    }
+
+    /// Photons traced so far.
+    pub fn photons(&self) -> u64 {
+        self.photons
+    }
+
+    /// Which of the independent randomisations it follows.
+    pub fn replicate(&self) -> u32 {
+        self.points.replicate
+    }
+
+    fn how<'a>(&self, interrupt: &'a AtomicBool, progress: &'a (dyn Fn(u64) + Sync)) -> Result<How<'a>> {
+        self.algorithm.check_skipping(self.scene.emitters.is_single())?;
+        let (reuse, sampling) = (self.algorithm.variant.reuses(), self.algorithm.sampling());
+        Ok(How { reuse, sampling, interrupt, progress })
+    }
+
+    fn moved_on(&mut self, until: u64, attempts: u64, traced: Traced) -> Result<Traced> {
         check_balance(&traced)?;
         (self.photons, self.attempts) = (until, attempts);
         Ok(traced)
     }
 }
 
-struct Stage<'a, 's> {
-    scene: &'s Scene,
+/// The photons up to number `until`, still to be traced.
+struct Stage<'a, 's, F> {
+    tracer: &'a Tracer<'s>,
     how: How<'a>,
-    receivers: &'a Receivers<'s>,
-    attempts: u64,
-    wanted: u64,
+    until: u64,
+    sink: F,
 }
 
-impl UsePoints for Stage<'_, '_> {
+impl<S: Sink<Grey>, F: Fn() -> S + Sync> UsePoints for Stage<'_, '_, F> {
     type Output = (Traced, u64);
 
     fn with<P: Points>(self, points: &P) -> Self::Output {
@@ -129,14 +161,19 @@ impl UsePoints for Stage<'_, '_> {
     }
 }
 
-impl Stage<'_, '_> {
-    fn carrying<P: Points, T: Throughput>(self, points: &P, carried: T) -> (Traced, u64) {
-        let Self { scene, how, receivers, attempts, wanted } = self;
+impl<F> Stage<'_, '_, F> {
+    fn carrying<P: Points, T: Throughput, S: Sink<T>>(self, points: &P, carried: T) -> (Traced, u64)
+    where
+        F: Fn() -> S + Sync,
+    {
+        let Self { tracer, how, until, sink } = self;
+        let (scene, start) = (tracer.scene, tracer.attempts);
+        let wanted = until.saturating_sub(tracer.photons);
         let end = match how.sampling {
-            s if s.skips_points() => advance(scene, points, &how, attempts, wanted),
-            Sampling::Inverse(_) | Sampling::Rejection(_) => attempts + wanted,
+            s if s.skips_points() => advance(scene, points, &how, start, wanted),
+            Sampling::Inverse(_) | Sampling::Rejection(_) => start + wanted,
         };
-        (trace_range(scene, points, attempts..end, carried, how, || receivers.sink()), end)
+        (trace_range(scene, points, start..end, carried, how, sink), end)
     }
 }
 

@@ -7,6 +7,7 @@
 pub mod counts;
 pub mod photon_map;
 pub mod receiver;
+pub mod splat;
 pub mod weighted;
 
 pub use counts::{Counts, Moments};

@@ -25,6 +25,8 @@ pub struct Arrival<'a, T = Grey> {
     pub events: u32,
     /// What it carries.
     pub carried: &'a T,
+    /// On which side of what it was on its way here.
+    pub whereabouts: &'a Whereabouts,
 }
 
 /// What takes the arrivals of photons that carry `T`.
@@ -62,7 +64,7 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
         else {
             return End::Escaped;
         };
-        sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried });
+        sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
         let sign = if hit.front { 1.0 } else { -1.0 };
         let at = Incidence {
             direction,

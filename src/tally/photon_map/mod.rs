@@ -10,12 +10,14 @@
 
 mod order;
 pub mod record;
+pub mod sink;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use order::{Key, Order};
 pub use record::{Frame, Photon};
+pub use sink::{Channels, PhotonSink, PhotonStore};
 
 /// Photons for which the guide has one entry.
 const BLOCK: usize = 64;

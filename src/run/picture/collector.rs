@@ -1,0 +1,288 @@
+//! The passes of a picture from photon maps: photons are kept up to the camera's memory, shown to the camera, dropped.
+//!
+//! Photons are accepted range by range of a replicate's indices; a range is a power of two where memory decides it, so that
+//! it is a net by itself. How many photons a range will leave is foretold from those before it. Where that fails the store
+//! is full before the range ends: receivers have counted it, its photons are dropped, and it is traced again in halves for
+//! the camera alone.
+
+use std::time::Instant;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::scene::Scene;
+use crate::scene::camera::CameraSpec;
+use crate::tally::Receivers;
+use crate::tally::photon_map::sink::Kept;
+use crate::tally::photon_map::{Channels, Photon, PhotonMap, PhotonStore};
+use crate::transport::parallel::Traced;
+
+use super::super::plan::Plan;
+use super::super::tracer::Tracer;
+use super::eye::{Bandwidths, Eye};
+use super::summary::{Cost, PictureSummary};
+use super::{KeptPhotons, Picture, Watch};
+
+/// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
+const fn bytes_of_photon<const C: usize>() -> u64 {
+    2 * size_of::<Photon<C>>() as u64 + 8
+}
+
+/// What photons may leave above what is foretold: an eighth and some, so that few ranges are traced twice.
+fn with_reserve(photons: f64) -> f64 {
+    1.125 * photons + 1024.0
+}
+
+/// Photons on their way into a picture.
+pub(super) struct Collector<'a, const C: usize> {
+    scene: &'a Scene,
+    watch: Watch<'a>,
+    eye: Eye<'a, C>,
+    store: PhotonStore<C>,
+    /// Most photons at a time.
+    capacity: usize,
+    held: Kept<C>,
+    held_photons: usize,
+    /// Photons traced, of which some were kept.
+    traced: u64,
+    kept: u64,
+    /// Replicates of the photons in the camera's sums and in `held`.
+    replicates: u32,
+    /// Flux of a photon in the camera's sums so far, lm: that of a whole run, set with the first pass.
+    photon_lm: Option<f64>,
+    planned: u64,
+    bandwidths: Option<Bandwidths>,
+    passes: u32,
+    keep: bool,
+    camera_s: f64,
+}
+
+impl<'a, const C: usize> Collector<'a, C> {
+    /// For the camera of a scene.
+    ///
+    /// # Errors
+    /// A camera that cannot see, or whose pixels need too much memory.
+    pub(super) fn new(
+        scene: &'a Scene,
+        spec: &'a CameraSpec,
+        plan: &Plan,
+        keep: bool,
+        watch: Watch<'a>,
+    ) -> Result<Self> {
+        let capacity = usize::try_from(spec.photon_memory_bytes / bytes_of_photon::<C>());
+        Ok(Self {
+            scene,
+            watch,
+            eye: Eye::new(scene, spec, plan.replicates)?,
+            store: PhotonStore::new(scene),
+            capacity: capacity.unwrap_or(usize::MAX).max(1),
+            held: Kept::default(),
+            held_photons: 0,
+            traced: 0,
+            kept: 0,
+            replicates: 0,
+            photon_lm: None,
+            planned: plan.photons(),
+            bandwidths: None,
+            passes: 0,
+            keep,
+            camera_s: 0.0,
+        })
+    }
+
+    /// Takes a tracer on to photon number `end`, in as many ranges as memory asks for. An incomplete one is not accepted.
+    ///
+    /// # Errors
+    /// Those of tracing, and of a pass.
+    pub(super) fn stage<T: Channels<C>>(
+        &mut self,
+        tracer: &mut Tracer<'_>,
+        end: u64,
+        receivers: &Receivers<'_>,
+        carried: T,
+    ) -> Result<Traced> {
+        let mut all = Traced::new(self.scene);
+        while tracer.photons() < end && all.complete {
+            let to = self.next_end(tracer.photons(), end);
+            if self.held_photons > 0 && self.foretold(to - tracer.photons()) > self.room() {
+                self.pass(false)?;
+            }
+            let before = *tracer;
+            let (traced, kept) = self.range(tracer, to, self.room(), receivers, carried)?;
+            all.merge(&traced);
+            match kept {
+                _ if !traced.complete => {}
+                Some(kept) => self.accept(kept, before.replicate(), to - before.photons()),
+                None => self.again(before, to, carried)?,
+            }
+        }
+        Ok(all)
+    }
+
+    /// Where the next range ends: at `end`, or where as many photons as there is memory for are to be expected.
+    fn next_end(&self, from: u64, end: u64) -> u64 {
+        let mut length = end - from;
+        if self.foretold(length) <= self.capacity {
+            return end;
+        }
+        length = length.next_power_of_two();
+        while length > 1 && self.foretold(length) > self.capacity {
+            length /= 2;
+        }
+        end.min((from / length + 1) * length)
+    }
+
+    /// Photons that so many traced ones are likely to leave; 0 while nothing is known.
+    fn foretold(&self, photons: u64) -> usize {
+        if self.traced == 0 {
+            return 0;
+        }
+        with_reserve(photons as f64 * (self.kept as f64 / self.traced as f64)) as usize
+    }
+
+    fn room(&self) -> usize {
+        self.capacity.saturating_sub(self.held_photons)
+    }
+
+    fn range<T: Channels<C>>(
+        &mut self,
+        tracer: &mut Tracer<'_>,
+        to: u64,
+        most: usize,
+        receivers: &Receivers<'_>,
+        carried: T,
+    ) -> Result<(Traced, Option<Kept<C>>)> {
+        self.store.limit(most);
+        let replicate = tracer.replicate();
+        let sink = || self.store.sink(receivers.sink(), replicate);
+        let traced = tracer.trace_into(to, carried, sink, self.watch.interrupt, self.watch.photons)?;
+        Ok((traced, self.store.take()))
+    }
+
+    fn accept(&mut self, kept: Kept<C>, replicate: u32, traced: u64) {
+        for (held, kept) in self.held.iter_mut().zip(kept) {
+            self.held_photons += kept.iter().map(Vec::len).sum::<usize>();
+            self.kept += kept.iter().map(|block| block.len() as u64).sum::<u64>();
+            held.extend(kept);
+        }
+        self.traced += traced;
+        self.replicates = self.replicates.max(replicate + 1);
+    }
+
+    /// A range that left more photons than there was room for, traced for the camera alone: at once where the room was
+    /// what others left, else in halves.
+    fn again<T: Channels<C>>(&mut self, before: Tracer<'_>, to: u64, carried: T) -> Result<()> {
+        let had_all_room = self.held_photons == 0;
+        if !had_all_room {
+            self.pass(false)?;
+        }
+        let nobody = Receivers::new(&self.scene.geometry, &[]);
+        let silent = Watch { photons: &|_| {}, ..self.watch };
+        let watch = std::mem::replace(&mut self.watch, silent);
+        let mut tracer = before;
+        let mut length = to - before.photons();
+        if had_all_room && length > 1 {
+            length = length.next_power_of_two() / 2;
+        }
+        let mut result = Ok(());
+        while result.is_ok() && tracer.photons() < to {
+            let from = tracer;
+            let part = to.min((from.photons() / length + 1) * length);
+            // What one photon leaves is kept, however much it is.
+            let most = if length == 1 { usize::MAX } else { self.room() };
+            result = match self.range(&mut tracer, part, most, &nobody, carried) {
+                Err(e) => Err(e),
+                Ok((traced, _)) if !traced.complete => break,
+                Ok((_, Some(kept))) => {
+                    self.accept(kept, from.replicate(), part - from.photons());
+                    Ok(())
+                }
+                Ok((_, None)) => self.again(from, part, carried),
+            };
+        }
+        self.watch = watch;
+        result
+    }
+
+    /// Takes the photons of another run of the scene for its own.
+    pub(super) fn adopt(&mut self, kept: KeptPhotons<C>) {
+        self.planned = kept.traced;
+        self.replicates = kept.replicates;
+        self.traced = kept.traced;
+        self.kept = kept.photons.len() as u64;
+        self.held_photons = kept.photons.len();
+        let (scattered, not): (Vec<_>, Vec<_>) = kept.photons.into_iter().partition(Photon::is_scattered);
+        self.held = [vec![not], vec![scattered]];
+    }
+
+    /// Shows the camera what is held. In a run of one pass a photon's flux is known exactly by then; before, it is that of
+    /// the run as planned, and the sums are corrected at the end.
+    fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
+        if self.keep && !last {
+            return Err(Diagnostic::new(
+                Kind::Limit,
+                format!("more than {} photons to keep", self.capacity),
+                "as many photons as the camera's memory holds, to save them",
+            )
+            .hint("a larger photon_memory_mb, or fewer photons"));
+        }
+        let started = Instant::now();
+        let flux_lm = self.scene.emitters.flux_lm();
+        let standing_for = if last { self.traced } else { self.planned };
+        let photon_lm = *self.photon_lm.get_or_insert(flux_lm / standing_for.max(1) as f64);
+        let in_pass = std::mem::take(&mut self.held_photons) as f64;
+        let held = std::mem::take(&mut self.held);
+        let frame = self.store.frame();
+        // A bandwidth is for the photons of the whole run: a pass has a part of them.
+        let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
+        let part = part * self.traced as f64 / standing_for.max(1) as f64;
+        let maps = held.map(|blocks| {
+            let radius_m = self.eye.search_radius_m(blocks.iter().map(Vec::len).sum());
+            PhotonMap::build(joined(blocks), frame, radius_m)
+        });
+        let bandwidths = self.bandwidths.get_or_insert_with(|| Bandwidths::choose(&self.eye, &maps, part));
+        self.eye.add(&maps, photon_lm, bandwidths, part, self.watch.camera)?;
+        self.passes += 1;
+        self.camera_s += started.elapsed().as_secs_f64();
+        let [caustic, diffuse] = &maps;
+        Ok(self.keep.then(|| [caustic.photons(), diffuse.photons()].concat()))
+    }
+
+    /// The picture of all that was accepted.
+    ///
+    /// # Errors
+    /// Those of a pass.
+    pub(super) fn finish(mut self) -> Result<Picture<C>> {
+        let kept = if self.passes == 0 || self.held_photons > 0 { self.pass(true)? } else { None };
+        let photon_lm = self.scene.emitters.flux_lm() / self.traced.max(1) as f64;
+        let scale = self.photon_lm.map_or(1.0, |used| photon_lm / used);
+        let photons = kept.map(|photons| KeptPhotons {
+            frame: self.store.frame(),
+            photons,
+            traced: self.traced,
+            replicates: self.replicates,
+        });
+        let chosen = self.bandwidths.map(|b| b.chosen());
+        let film = self.eye.finish(scale, self.replicates);
+        let cost = Cost::of(&film);
+        let summary = PictureSummary {
+            method: crate::scene::camera::Method::Map,
+            photons: self.traced,
+            replicates: self.replicates,
+            photons_kept: self.kept,
+            passes: self.passes,
+            bandwidth: chosen,
+            cost,
+            time_s: self.camera_s,
+            from_file: false,
+        };
+        Ok(Picture { film, summary, photons })
+    }
+}
+
+/// Blocks one after another; each is dropped when it is copied.
+fn joined<const C: usize>(blocks: Vec<Vec<Photon<C>>>) -> Vec<Photon<C>> {
+    let mut all = Vec::with_capacity(blocks.iter().map(Vec::len).sum());
+    for block in blocks {
+        all.extend_from_slice(&block);
+    }
+    all
+}

@@ -1,0 +1,189 @@
+//! A run with a camera: receivers as without one, and the picture.
+//!
+//! By the photon map: photons are kept while there is room for them; what is kept is made into two densities, that of
+//! light that no surface scattered before (L S+ D) and that of all other, the camera adds what it sees of both to its sums,
+//! and the photons are dropped: a pass. By splatting: every arrival is joined to the pinhole while it is traced.
+//!
+//! What the picture stands for are the ranges of photons that were traced wholly: all of them, or after an interrupt
+//! those until then.
+
+mod collector;
+mod eye;
+mod splat;
+pub mod summary;
+
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use crate::bsdf::{Grey, Rgb};
+use crate::camera::Film;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::scene::Scene;
+use crate::scene::camera::{CameraSpec, Method};
+use crate::tally::photon_map::{Channels, Frame, Photon};
+
+use super::{Outcome, Plan, trace_by};
+use collector::Collector;
+pub use summary::{Chosen, PictureSummary};
+
+/// What a camera saw.
+#[derive(Debug)]
+pub struct Picture<const C: usize> {
+    /// Its pixels.
+    pub film: Film<C>,
+    /// How it was made, and how good it is.
+    pub summary: PictureSummary,
+    /// The photons it was made of, in a fixed order, where they were asked for.
+    pub photons: Option<KeptPhotons<C>>,
+}
+
+/// A picture in one channel or three.
+#[derive(Debug)]
+pub enum AnyPicture {
+    /// Luminance, of a scene without colour.
+    Grey(Picture<1>),
+    /// Linear sRGB whose Y is luminance.
+    Rgb(Picture<3>),
+}
+
+impl AnyPicture {
+    /// How it was made.
+    pub fn summary(&self) -> &PictureSummary {
+        match self {
+            Self::Grey(picture) => &picture.summary,
+            Self::Rgb(picture) => &picture.summary,
+        }
+    }
+}
+
+/// The photons of a run, for another view of the same light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptPhotons<const C: usize> {
+    /// In which steps positions are.
+    pub frame: Frame,
+    /// Photons, in an order of their own.
+    pub photons: Vec<Photon<C>>,
+    /// Photons that were traced for them.
+    pub traced: u64,
+    /// Replicates they belong to.
+    pub replicates: u32,
+}
+
+/// What a run does beside tracing.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Set from outside to stop.
+    pub interrupt: &'a AtomicBool,
+    /// Told numbers of photons as they are done.
+    pub photons: &'a (dyn Fn(u64) + Sync),
+    /// Told the part of the camera's work that is done in a pass, 0 to 1.
+    pub camera: &'a (dyn Fn(f64) + Sync),
+}
+
+/// The camera of a scene, for those who know that it has one.
+///
+/// # Errors
+/// A scene without.
+fn camera_of(scene: &Scene) -> Result<&CameraSpec> {
+    scene.camera.as_ref().ok_or_else(|| {
+        Diagnostic::new(Kind::Missing, "a scene without a camera", "a scene with [camera] for a picture")
+    })
+}
+
+/// What cannot be done with a camera, told before tracing.
+///
+/// # Errors
+/// Splatting through a lens: a splat meets a point.
+pub fn check(spec: &CameraSpec) -> Result<()> {
+    if spec.method == Method::Splat && spec.lens_radius_m > 0.0 {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            format!("method \"splat\" and lens_radius = {}", spec.lens_radius_m),
+            "a pinhole (lens_radius = 0) where photons are joined to it",
+        )
+        .hint("method = \"map\" sees through a lens"));
+    }
+    Ok(())
+}
+
+/// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is that of
+/// [`super::trace`]. With `keep` the picture's photons are handed out too.
+///
+/// # Errors
+/// Those of [`super::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a surface); `keep` and more
+/// photons than the camera's memory holds.
+pub fn trace_picture(
+    scene: &Scene,
+    plan: &Plan,
+    keep: bool,
+    watch: Watch<'_>,
+) -> Result<(Outcome, AnyPicture)> {
+    let spec = camera_of(scene)?;
+    check(spec)?;
+    if scene.is_coloured() {
+        let (outcome, picture) = with_channels::<3, _>(scene, spec, plan, keep, watch, Rgb::WHITE)?;
+        Ok((outcome, AnyPicture::Rgb(picture)))
+    } else {
+        let (outcome, picture) = with_channels::<1, _>(scene, spec, plan, keep, watch, Grey)?;
+        Ok((outcome, AnyPicture::Grey(picture)))
+    }
+}
+
+fn with_channels<const C: usize, T: Channels<C>>(
+    scene: &Scene,
+    spec: &CameraSpec,
+    plan: &Plan,
+    keep: bool,
+    watch: Watch<'_>,
+    carried: T,
+) -> Result<(Outcome, Picture<C>)> {
+    match spec.method {
+        Method::Map => {
+            let mut collector = Collector::new(scene, spec, plan, keep, watch)?;
+            let outcome = trace_by(
+                scene,
+                plan,
+                |tracer, end, receivers| collector.stage(tracer, end, receivers, carried),
+                watch.interrupt,
+            )?;
+            Ok((outcome, collector.finish()?))
+        }
+        Method::Splat => splat::trace(scene, spec, plan, watch, carried),
+    }
+}
+
+/// The picture of photons that were kept by another run of the same scene.
+///
+/// # Errors
+/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have.
+pub fn picture_of_kept<const C: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    kept: KeptPhotons<C>,
+    watch: Watch<'_>,
+) -> Result<Picture<C>> {
+    let spec = camera_of(scene)?;
+    check(spec)?;
+    if spec.method == Method::Splat {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            "method \"splat\" and photons from a file",
+            "method = \"map\": splatting joins photons to the pinhole while they are traced",
+        ));
+    }
+    let primitives = scene.geometry.primitive_count() as u64;
+    if kept.photons.iter().any(|p| u64::from(p.primitive) >= primitives) {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            "photons on surfaces that this scene does not have",
+            "photons of the same scene",
+        ));
+    }
+    let started = Instant::now();
+    let mut collector = Collector::new(scene, spec, plan, false, watch)?;
+    collector.adopt(kept);
+    let mut picture = collector.finish()?;
+    picture.summary.from_file = true;
+    picture.summary.time_s = started.elapsed().as_secs_f64();
+    Ok(picture)
+}

@@ -1,0 +1,81 @@
+//! The picture of photons that are joined to the pinhole one by one.
+
+use std::time::Instant;
+
+use crate::camera::Film;
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::scene::camera::{CameraSpec, Method};
+use crate::tally::photon_map::Channels;
+use crate::tally::splat::{Splat, SplatMoments};
+
+use super::super::{Outcome, Plan, trace_by};
+use super::eye::Eye;
+use super::summary::{Cost, PictureSummary, luminance_of};
+use super::{Picture, Watch};
+
+/// Traces a scene and splats its photons; emitters and background are seen by eye paths.
+pub(super) fn trace<const C: usize, T: Channels<C>>(
+    scene: &Scene,
+    spec: &CameraSpec,
+    plan: &Plan,
+    watch: Watch<'_>,
+    carried: T,
+) -> Result<(Outcome, Picture<C>)> {
+    let mut eye = Eye::<C>::new(scene, spec, plan.replicates)?;
+    let mut splat = Splat::<C>::new(scene, spec)?;
+    let mut moments = SplatMoments::<C>::new(spec.pixels[0] as usize * spec.pixels[1] as usize);
+    let mut joined = 0;
+    let outcome = trace_by(
+        scene,
+        plan,
+        |tracer, end, receivers| {
+            let sink = || splat.sink(receivers.sink());
+            let traced = tracer.trace_into(end, carried, sink, watch.interrupt, watch.photons)?;
+            // What counts are whole replicates, and of the first one what is finished of it.
+            if traced.complete && (tracer.replicate() == 0 || end == plan.photons_per_replicate) {
+                if tracer.replicate() == 0 {
+                    moments.restart();
+                }
+                splat.close(&mut moments, end == plan.photons_per_replicate);
+                joined = splat.joined();
+            }
+            Ok(traced)
+        },
+        watch.interrupt,
+    )?;
+    let started = Instant::now();
+    eye.add_emitters(watch.camera)?;
+    let film = with_splats(eye.finish(1.0, outcome.replicates), &moments, &outcome);
+    let cost = Cost::of(&film);
+    let summary = PictureSummary {
+        method: Method::Splat,
+        photons: outcome.photons,
+        replicates: outcome.replicates,
+        photons_kept: joined,
+        passes: 1,
+        bandwidth: None,
+        cost,
+        time_s: started.elapsed().as_secs_f64(),
+        from_file: false,
+    };
+    Ok((outcome, Picture { film, summary, photons: None }))
+}
+
+/// The film of the eye's paths with the splats added to its pixels; there is no bias.
+fn with_splats<const C: usize>(mut film: Film<C>, moments: &SplatMoments<C>, outcome: &Outcome) -> Film<C> {
+    let (photon_lm, r) = (outcome.photon_lm, f64::from(outcome.replicates));
+    for (pixel, (sum, square)) in moments.sum.iter().zip(&moments.square).enumerate() {
+        for (value, sum) in film.value[pixel].iter_mut().zip(sum) {
+            *value += sum * photon_lm;
+        }
+        let y = luminance_of(*sum);
+        // R s^2 of the R partial sums.
+        let variance = r / (r - 1.0) * (square - y * y / r).max(0.0) * photon_lm * photon_lm;
+        let of_eye = film.standard_error[pixel];
+        film.standard_error[pixel] =
+            if outcome.replicates < 2 { f64::NAN } else { (variance + of_eye * of_eye).sqrt() };
+        film.bias[pixel] = 0.0;
+    }
+    film
+}
