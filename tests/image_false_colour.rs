@@ -3,7 +3,7 @@
 
 use caustix::image::canvas::{Canvas, Colour};
 use caustix::image::colour_map::{colour, no_value};
-use caustix::image::false_colour::{FalseColour, display_size};
+use caustix::image::false_colour::{FalseColour, Quantity, display_size};
 use caustix::image::isolux::isolux;
 use caustix::image::scale::{Axis, Scale};
 
@@ -12,7 +12,8 @@ fn picture(values: &[f64], width: usize, height: usize, scale: Scale) -> FalseCo
         title: "receiver",
         width,
         height,
-        illuminance_lx: values,
+        quantity: Quantity::Illuminance,
+        values,
         size_m: None,
         scale,
         isolux: false,

@@ -92,10 +92,10 @@ fn top_level() {
     );
     assert_eq!(error.advice(), Some("did you mean `receiver`?"));
     expect(
-        &format!("{LAMP}{good}«[camera]\nfov_deg = 40\n"),
-        Kind::Unavailable,
-        "[camera]",
-        "a scene without a camera: it is not available yet",
+        &format!("{LAMP}{good}«[camera]\nlook_at = [0, 0, 0]\nfov_deg = 40\npixels = [4, 3]\n"),
+        Kind::Missing,
+        "[camera] without `position`",
+        "position = [x, y, z] in metres",
     );
     expect(
         &format!("«[emitter]\ntype = \"isotropic\"\n{good}"),

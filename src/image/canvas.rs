@@ -3,15 +3,11 @@
 //! Coordinates are pixels, x right and y down, the centre of the top left pixel at (0.5, 0.5). Blending is done in
 //! linear light; coverage is the area of the pixel under the stroke, so thin lines keep their weight at any angle.
 
-use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::OnceLock;
 
-use ::image::codecs::png::PngEncoder;
-use ::image::{ExtendedColorType, ImageEncoder};
-
-use super::atomic::write_atomically;
 use super::font;
+use super::png::write_rgb8;
 use crate::error::Result;
 
 /// Longest run of a stroke that is rasterised at once: keeps the boxes of oblique lines small.
@@ -260,16 +256,7 @@ impl Canvas {
     /// # Errors
     /// [`crate::error::Kind::Io`] with the path; an older file of that name then stands as it was.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_atomically(path, |writer| self.encode_png(writer))
-    }
-
-    fn encode_png(&self, writer: &mut BufWriter<std::fs::File>) -> io::Result<()> {
-        let too_wide = |_| io::Error::other("the picture is too large for a PNG");
-        let width = u32::try_from(self.width).map_err(too_wide)?;
-        let height = u32::try_from(self.height).map_err(too_wide)?;
-        PngEncoder::new(writer)
-            .write_image(&self.to_srgb_bytes(), width, height, ExtendedColorType::Rgb8)
-            .map_err(io::Error::other)
+        write_rgb8(path, self.width, self.height, &self.to_srgb_bytes())
     }
 
     fn blend(&mut self, index: usize, colour: Colour, share: f32) {

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
 use std::path::Path;
 
+use ::exr::meta::attribute::Chromaticities;
 use ::exr::prelude as exr;
 use ::exr::prelude::{ReadChannels as _, ReadLayers as _, WritableImage as _};
 
@@ -80,15 +81,50 @@ pub fn write_maps(
     attributes: &[(String, Value)],
 ) -> Result<()> {
     let path = path.as_ref();
-    let bytes = encode(width, height, channels, attributes).map_err(|e| e.in_file(path))?;
+    let bytes = encode(width, height, channels, attributes, Light::Other).map_err(|e| e.in_file(path))?;
     write_atomically(path, |writer| writer.write_all(&bytes))
 }
+
+/// The same for a picture whose channels `R`, `G`, `B` (or `Y`) are in cd/m2, with the format's own attributes for that:
+/// `chromaticities` (those of ITU-R BT.709, which are sRGB's) and `whiteLuminance` = 1, the luminance of (1, 1, 1) in cd/m2.
+///
+/// # Errors
+/// As [`write_maps`].
+pub fn write_luminance(
+    path: impl AsRef<Path>,
+    width: usize,
+    height: usize,
+    channels: &[Channel<'_>],
+    attributes: &[(String, Value)],
+) -> Result<()> {
+    let path = path.as_ref();
+    let bytes = encode(width, height, channels, attributes, Light::Luminance).map_err(|e| e.in_file(path))?;
+    write_atomically(path, |writer| writer.write_all(&bytes))
+}
+
+/// What a file's numbers are to a viewer of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Light {
+    /// Linear sRGB in cd/m2.
+    Luminance,
+    /// Any other numbers.
+    Other,
+}
+
+/// Red, green, blue and white of ITU-R BT.709 in CIE 1931 x, y.
+const BT709: Chromaticities = Chromaticities {
+    red: exr::Vec2(0.64, 0.33),
+    green: exr::Vec2(0.30, 0.60),
+    blue: exr::Vec2(0.15, 0.06),
+    white: exr::Vec2(0.3127, 0.3290),
+};
 
 fn encode(
     width: usize,
     height: usize,
     channels: &[Channel<'_>],
     attributes: &[(String, Value)],
+    light: Light,
 ) -> Result<Vec<u8>> {
     check_channels(width, height, channels)?;
     let list = channels.iter().map(|channel| {
@@ -112,8 +148,13 @@ fn encode(
     };
     let channels = exr::AnyChannels::sort(list.collect());
     let layer = exr::Layer::new((width, height), described, encoding, channels);
+    let mut image = exr::Image::from_layer(layer);
+    if light == Light::Luminance {
+        image.attributes.chromaticities = Some(BT709);
+        image.layer_data.attributes.white_luminance = Some(1.0);
+    }
     let mut bytes = Cursor::new(Vec::new());
-    exr::Image::from_layer(layer).write().to_buffered(&mut bytes).map_err(|error| {
+    image.write().to_buffered(&mut bytes).map_err(|error| {
         Diagnostic::new(Kind::Io, format!("\"{error}\" while encoding"), "maps that OpenEXR can hold")
     })?;
     let mut bytes = bytes.into_inner();
@@ -306,11 +347,11 @@ mod tests {
     fn the_same_contents_give_the_same_bytes() {
         let lux: Vec<f32> = (0..64 * 64).map(|i| (i as f32).sin()).collect();
         let channels = [Channel { name: "illuminance", data: Data::F32(&lux) }];
-        let first = encode(64, 64, &channels, &attributes()).unwrap();
+        let first = encode(64, 64, &channels, &attributes(), Light::Other).unwrap();
         for _ in 0..8 {
             let mut shuffled = attributes();
             shuffled.reverse();
-            assert!(encode(64, 64, &channels, &shuffled).unwrap() == first);
+            assert!(encode(64, 64, &channels, &shuffled, Light::Other).unwrap() == first);
         }
     }
 
@@ -318,7 +359,9 @@ mod tests {
     fn what_cannot_be_written_is_refused() {
         let values = [1.0_f32; 4];
         let good = Channel { name: "a", data: Data::F32(&values) };
-        let kind = |w, h, c: &[Channel<'_>], a: &[(String, Value)]| encode(w, h, c, a).unwrap_err().kind();
+        let kind = |w, h, c: &[Channel<'_>], a: &[(String, Value)]| {
+            encode(w, h, c, a, Light::Other).unwrap_err().kind()
+        };
         assert_eq!(kind(0, 4, &[good], &[]), Kind::Range);
         assert_eq!(kind(3, 1, &[good], &[]), Kind::Range);
         assert_eq!(kind(2, 2, &[], &[]), Kind::Range);

@@ -1,4 +1,4 @@
-//! An illuminance map as a picture: false colours with a scale in lux, axes in metres, isolux lines, the numbers a
+//! A map of illuminance (or luminance) as a picture: false colours with a scale, axes in metres, isolux lines, the numbers a
 //! lighting engineer asks for first.
 
 use std::path::Path;
@@ -40,8 +40,10 @@ pub struct FalseColour<'a> {
     pub width: usize,
     /// Cells along v.
     pub height: usize,
-    /// Illuminance in lux, `width` x `height`, the row of the largest v first; NaN and infinities are "no value".
-    pub illuminance_lx: &'a [f64],
+    /// What the values are.
+    pub quantity: Quantity,
+    /// Values in the quantity's unit, `width` x `height`, the row of the largest v first; NaN and infinities are "no value".
+    pub values: &'a [f64],
     /// Sides along u and v in metres; without it the axes run from 0 to 1.
     pub size_m: Option<[f64; 2]>,
     /// The scale of the colours.
@@ -50,6 +52,25 @@ pub struct FalseColour<'a> {
     pub isolux: bool,
     /// Lines of text under the picture.
     pub footer: Vec<String>,
+}
+
+/// What is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Illuminance on a surface, lx.
+    Illuminance,
+    /// Luminance of a picture, cd/m2: it has no (u, v) axes, and uniformity means nothing.
+    Luminance,
+}
+
+impl Quantity {
+    /// Its unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Illuminance => "lx",
+            Self::Luminance => "cd/m2",
+        }
+    }
 }
 
 /// Where things are, in pixels.
@@ -67,7 +88,7 @@ impl FalseColour<'_> {
     /// Draws the picture.
     pub fn render(&self) -> Canvas {
         match self.checked() {
-            Some(cells) => self.render_cells(self.illuminance_lx, cells),
+            Some(cells) => self.render_cells(self.values, cells),
             None => self.render_cells(&[f64::NAN], [1, 1]),
         }
     }
@@ -83,7 +104,7 @@ impl FalseColour<'_> {
     /// Where the map and the colour scale lie in the picture: x, y, width, height in pixels of each.
     pub fn areas(&self) -> [[usize; 4]; 2] {
         let (values, cells) = match self.checked() {
-            Some(cells) => (self.illuminance_lx, cells),
+            Some(cells) => (self.values, cells),
             None => (&[f64::NAN][..], [1, 1]),
         };
         let labels = bar_labels(&Axis::fit_map(values, cells, self.scale));
@@ -94,7 +115,7 @@ impl FalseColour<'_> {
     fn checked(&self) -> Option<[usize; 2]> {
         let fits = self.width > 0
             && self.height > 0
-            && self.width.checked_mul(self.height) == Some(self.illuminance_lx.len());
+            && self.width.checked_mul(self.height) == Some(self.values.len());
         fits.then_some([self.width, self.height])
     }
 
@@ -113,7 +134,7 @@ impl FalseColour<'_> {
         draw_map(&mut canvas, values, cells, &layout, &axis);
         draw_lines(&mut canvas, &layout, &axis, &lines);
         self.draw_axes(&mut canvas, &layout);
-        draw_bar(&mut canvas, &layout, &axis, &labels);
+        draw_bar(&mut canvas, &layout, &axis, &labels, self.quantity);
         for (i, line) in footer.iter().enumerate() {
             let y = layout.footer_y + (i + 1) * LINE_HEIGHT - 6;
             canvas.text([MARGIN as f64, y as f64], line, &TextStyle::new(TEXT_SIZE, ink()));
@@ -158,6 +179,9 @@ impl FalseColour<'_> {
     fn draw_axes(&self, canvas: &mut Canvas, layout: &Layout) {
         let [x, y, width, height] = layout.map.map(|p| p as f64);
         frame(canvas, layout.map);
+        if self.quantity == Quantity::Luminance {
+            return;
+        }
         let [u, v] = self.sides();
         let (u_ticks, v_ticks) = self.axis_ticks([layout.map[2], layout.map[3]]);
         let style = TextStyle::new(TICK_SIZE, ink());
@@ -186,7 +210,7 @@ impl FalseColour<'_> {
     }
 
     fn footer_text(&self, values: &[f64], lines: &Isolux) -> Vec<String> {
-        let mut text = vec![statistics_line(values)];
+        let mut text = vec![statistics_line(values, self.quantity)];
         let empty = values.iter().filter(|v| !v.is_finite()).count();
         if empty > 0 {
             text.push(format!("grey: no value ({empty} of {} cells)", values.len()));
@@ -206,7 +230,7 @@ impl FalseColour<'_> {
 }
 
 /// Minimum, mean, maximum and uniformity of the cells that have a value.
-fn statistics_line(values: &[f64]) -> String {
+fn statistics_line(values: &[f64], quantity: Quantity) -> String {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let count = finite().count();
     if count == 0 {
@@ -217,7 +241,12 @@ fn statistics_line(values: &[f64]) -> String {
     let mean = finite().map(|v| v / count as f64).sum::<f64>();
     let uniformity = if mean > 0.0 { three_digits(min / mean) } else { "-".to_owned() };
     let [min, mean, max] = [min, mean, max].map(three_digits);
-    format!("min {min} lx    mean {mean} lx    max {max} lx    uniformity U0 = min/mean = {uniformity}")
+    let unit = quantity.unit();
+    let line = format!("min {min} {unit}    mean {mean} {unit}    max {max} {unit}");
+    match quantity {
+        Quantity::Illuminance => format!("{line}    uniformity U0 = min/mean = {uniformity}"),
+        Quantity::Luminance => line,
+    }
 }
 
 /// Pixels on which a map of so many cells is shown; cells become squares, or follow `size_m`.
@@ -308,7 +337,7 @@ fn bar_labels(axis: &Axis) -> Vec<(f64, String)> {
     labels
 }
 
-fn draw_bar(canvas: &mut Canvas, layout: &Layout, axis: &Axis, labels: &[(f64, String)]) {
+fn draw_bar(canvas: &mut Canvas, layout: &Layout, axis: &Axis, labels: &[(f64, String)], quantity: Quantity) {
     let [left, top, width, height] = layout.bar;
     for row in 0..height {
         let t = 1.0 - (row as f64 + 0.5) / height as f64;
@@ -326,8 +355,9 @@ fn draw_bar(canvas: &mut Canvas, layout: &Layout, axis: &Axis, labels: &[(f64, S
             free_below = at - TICK_SIZE - 2.0;
         }
     }
-    let unit = if axis.log { "lx (log)" } else { "lx" };
-    canvas.text([left as f64, y - 12.0], unit, &TextStyle::new(TEXT_SIZE, ink()));
+    let unit = quantity.unit();
+    let unit = if axis.log { format!("{unit} (log)") } else { unit.to_owned() };
+    canvas.text([left as f64, y - 12.0], &unit, &TextStyle::new(TEXT_SIZE, ink()));
 }
 
 /// A line of one pixel around a rectangle.

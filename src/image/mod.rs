@@ -13,5 +13,7 @@ pub mod false_colour;
 pub mod font;
 mod glyphs;
 pub mod isolux;
+pub mod png;
 pub mod resample;
 pub mod scale;
+pub mod tone;

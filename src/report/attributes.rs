@@ -2,7 +2,7 @@
 //! thread count, path or date).
 
 use crate::image::exr::Value;
-use crate::run::Outcome;
+use crate::run::{Outcome, Plan};
 use crate::scene::Scene;
 use crate::scene::description::{ReceiverEvents, ReceiverSide};
 use crate::scene::receiver::{Cells, Receiver};
@@ -17,9 +17,8 @@ pub fn attributes(
     receiver: &Receiver,
     statistics: &ReceiverStatistics,
 ) -> Vec<(String, Value)> {
-    let mut all = Vec::new();
+    let mut all = run_attributes(scene, &outcome.plan, outcome.photons, outcome.replicates);
     let mut text = |name: &str, value: &str| all.push((name.to_string(), Value::Text(value.to_string())));
-    text("caustix.version", env!("CARGO_PKG_VERSION"));
     text("caustix.quantity", "illuminance: flux arriving before the event, per cell area");
     text("caustix.unit.illuminance", "lx");
     text("caustix.unit.standard_error", "lx");
@@ -49,27 +48,10 @@ pub fn attributes(
             Cells::Faces { .. } => "face number = row * width + column; NaN beyond the last face",
         },
     );
-    let algorithm = outcome.plan.algorithm;
-    text("caustix.variant", algorithm.variant.name());
-    if algorithm.variant.rejects() {
-        text("caustix.rejection", algorithm.rejection.name());
-    } else {
-        text("caustix.solver", algorithm.solver.name());
-    }
-    text("caustix.sequence", algorithm.sequence.name());
-    text("caustix.seed", &outcome.plan.seed.to_string());
-    text("caustix.photons", &outcome.photons.to_string());
-    text("caustix.replicates", &outcome.replicates.to_string());
     if let Some(why) = why_no_error(outcome) {
         text("caustix.standard_error_absent", why);
     }
-    text("caustix.scene.sha256", &scene.identity.sha256);
-    text("caustix.scene.text", &scene.identity.text);
-    for (i, (file, sha256)) in scene.identity.files.iter().enumerate() {
-        text(&format!("caustix.scene.file{i}"), &format!("{sha256}  {file}"));
-    }
     let mut number = |name: &str, value: f64| all.push((name.to_string(), Value::F64(value)));
-    number("caustix.emitted_lm", scene.emitters.flux_lm());
     number("caustix.flux_lm", statistics.flux_lm.value);
     if let Some(error) = statistics.flux_lm.standard_error {
         number("caustix.flux_standard_error_lm", error);
@@ -79,6 +61,31 @@ pub fn attributes(
     if let Some([width, height]) = receiver.size_m {
         number("caustix.width_m", width);
         number("caustix.height_m", height);
+    }
+    all
+}
+
+/// What every file says: the program, the settings of a run, the number of photons and replicates that its numbers stand for, the
+/// scene.
+pub fn run_attributes(scene: &Scene, plan: &Plan, photons: u64, replicates: u32) -> Vec<(String, Value)> {
+    let mut all = vec![("caustix.emitted_lm".to_string(), Value::F64(scene.emitters.flux_lm()))];
+    let mut text = |name: &str, value: &str| all.push((name.to_string(), Value::Text(value.to_string())));
+    text("caustix.version", env!("CARGO_PKG_VERSION"));
+    let algorithm = plan.algorithm;
+    text("caustix.variant", algorithm.variant.name());
+    if algorithm.variant.rejects() {
+        text("caustix.rejection", algorithm.rejection.name());
+    } else {
+        text("caustix.solver", algorithm.solver.name());
+    }
+    text("caustix.sequence", algorithm.sequence.name());
+    text("caustix.seed", &plan.seed.to_string());
+    text("caustix.photons", &photons.to_string());
+    text("caustix.replicates", &replicates.to_string());
+    text("caustix.scene.sha256", &scene.identity.sha256);
+    text("caustix.scene.text", &scene.identity.text);
+    for (i, (file, sha256)) in scene.identity.files.iter().enumerate() {
+        text(&format!("caustix.scene.file{i}"), &format!("{sha256}  {file}"));
     }
     all
 }

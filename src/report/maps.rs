@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::error::Result;
 use crate::image::atomic::write_atomically;
 use crate::image::exr::{Channel, Data, write_maps};
-use crate::image::false_colour::FalseColour;
+use crate::image::false_colour::{FalseColour, Quantity};
 use crate::image::scale::Scale;
 use crate::run::Outcome;
 use crate::scene::Scene;
@@ -97,7 +97,8 @@ fn picture<'a>(
         title: &receiver.name,
         width,
         height,
-        illuminance_lx: &s.illuminance_lx,
+        quantity: Quantity::Illuminance,
+        values: &s.illuminance_lx,
         size_m: receiver.size_m,
         scale: Scale::Auto,
         isolux: true,

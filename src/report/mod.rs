@@ -8,6 +8,7 @@ pub mod compare;
 pub mod json;
 pub mod maps;
 pub mod parts;
+pub mod picture;
 pub mod polar;
 pub mod room;
 pub mod statistics;

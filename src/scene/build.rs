@@ -30,6 +30,7 @@ use super::{Identity, Places, Scene, SceneParts};
 pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagnostic>> {
     let mut parts = SceneParts {
         compared_reflections: description.compare.map(|c| c.reflections),
+        camera: description.camera.as_ref().map(|c| c.spec.clone()),
         identity: identity(description),
         ..SceneParts::default()
     };
@@ -81,6 +82,7 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
         surfaces: description.surfaces.iter().map(|s| s.place).collect(),
         emitters: description.emitters.iter().map(|e| e.place).collect(),
         receivers: description.receivers.iter().map(|r| r.place).collect(),
+        camera: description.camera.as_ref().map(|c| c.place),
     };
     Scene::new(parts)
         .map_err(|errors| errors.into_iter().map(|e| e.in_file(&description.source.name)).collect())

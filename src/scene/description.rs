@@ -7,6 +7,7 @@
 
 use glam::DVec3;
 
+use super::camera::CameraSpec;
 use super::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
 use crate::bsdf::Reflectance;
 use crate::bsdf::tabulated::{Energy, Sides};
@@ -54,6 +55,8 @@ pub struct Description {
     pub surfaces: Vec<SurfaceDescription>,
     /// In the order of the file.
     pub receivers: Vec<ReceiverDescription>,
+    /// `[camera]`, where there is one.
+    pub camera: Option<CameraDescription>,
     /// `[compare]`, where there is one.
     pub compare: Option<CompareDescription>,
     /// Defaults for the command line.
@@ -469,6 +472,15 @@ pub enum ReceiverEvents {
     Direct,
     /// After at least one event.
     Indirect,
+}
+
+/// A `[camera]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraDescription {
+    /// What it asks for, with the defaults filled in.
+    pub spec: CameraSpec,
+    /// The header `[camera]`.
+    pub place: Place,
 }
 
 /// `[compare]`: what `caustix compare` does with the scene beside what every scene gets.

@@ -91,6 +91,8 @@ pub struct Places {
     pub emitters: Vec<Place>,
     /// Of receivers.
     pub receivers: Vec<Place>,
+    /// Of the camera, where there is one.
+    pub camera: Option<Place>,
 }
 
 impl Scene {

@@ -1,14 +1,15 @@
 //! What a scene requires: only that machinery runs (ARCHITECTURE, Numbers: "only what a scene requires").
 //!
 //! What is not in the list costs nothing: no storage and no branch in the inner loop. Only a scene of materials in colour
-//! has photons with weights. Today nothing that a scene can name needs stored photons, wavelengths or a camera, so none of
-//! those exists.
+//! has photons with weights; only one with a camera keeps photons, and only where the camera makes a map of them. Nothing that a
+//! scene can name needs wavelengths, so there are none.
 
 use crate::bsdf::Bsdf;
 use crate::emitter::Emitter;
 use crate::geometry::Shape;
 
 use super::Scene;
+use super::camera::Method;
 use super::receiver::Cells;
 
 /// The machinery this scene needs, each word once, in a fixed order.
@@ -39,6 +40,8 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
         ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),
+        ("camera", scene.camera.is_some()),
+        ("stored photons", scene.camera.as_ref().is_some_and(|c| c.method == Method::Map)),
     ]
     .into_iter()
     .filter_map(|(word, required)| required.then_some(word))

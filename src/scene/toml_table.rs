@@ -266,6 +266,11 @@ impl<'t, 'd> Table<'t, 'd> {
         good.then_some(cells)
     }
 
+    /// Whether the value of a key is a text: for keys that take a word or a number.
+    pub fn is_text(&self, key: &str) -> bool {
+        self.entries.get(key).is_some_and(|value| value.get_ref().is_str())
+    }
+
     /// A count as [`super::count::parse_count`] reads it: a number, or a text.
     pub fn count(&mut self, key: &'static str) -> Option<Placed<u64>> {
         let value = self.take(key)?;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::names::Names;
-use super::{COORDINATE, LENGTH, direction};
+use super::{COORDINATE, LENGTH, direction, orthogonal_part};
 use crate::error::Kind;
 use crate::scene::description::{BeamSection, EmitterDescription, EmitterShape, Frame};
 use crate::scene::toml_table::{Interval, Table};
@@ -83,16 +83,6 @@ fn read_frame(table: &mut Table<'_, '_>) -> Option<Frame> {
         return None;
     }
     orthogonal_part(DVec3::X, aim).map(|up| Frame { aim, up })
-}
-
-/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the
-/// angle between their lines is below 1e-9, where rounding would choose the direction.
-fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
-    let sine = v.cross(axis).length();
-    // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.
-    let once = super::unit(v - axis * v.dot(axis))?;
-    let part = super::unit(once - axis * once.dot(axis))?;
-    (sine >= 1e-9).then_some(part)
 }
 
 /// `radius`, or `size = [width, height]`.

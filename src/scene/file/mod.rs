@@ -2,6 +2,7 @@
 //!
 //! docs/SCENE.md is the manual of the format; the readers of its parts are the files of this folder.
 
+mod camera;
 mod emitter;
 mod heightfield;
 mod material;
@@ -14,10 +15,11 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
+pub use self::camera::MOST_PIXELS as MOST_CAMERA_PIXELS;
 pub use self::heightfield::MOST_CELLS as MOST_HEIGHTFIELD_CELLS;
 
 use self::names::Names;
-use super::description::{CompareDescription, Description, Place, Placed, RunDescription};
+use super::description::{CameraDescription, CompareDescription, Description, Place, Placed, RunDescription};
 use super::document::Document;
 use super::source::{self, Base, Source};
 use super::toml_table::{Interval, Table};
@@ -81,6 +83,7 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<Description, Vec<Diag
         materials: parts.materials.into_iter().flatten().collect(),
         surfaces: parts.surfaces.into_iter().flatten().collect(),
         receivers: parts.receivers.into_iter().flatten().collect(),
+        camera: parts.camera,
         compare: parts.compare,
         run: parts.run,
         warnings,
@@ -93,6 +96,7 @@ struct Parts {
     materials: Vec<Option<super::description::MaterialDescription>>,
     surfaces: Vec<Option<super::description::SurfaceDescription>>,
     receivers: Vec<Option<super::description::ReceiverDescription>>,
+    camera: Option<CameraDescription>,
     compare: Option<CompareDescription>,
     run: RunDescription,
 }
@@ -144,20 +148,17 @@ impl Parts {
             .map(|(index, table)| receiver::read(table, index, &mut names, &surface_names, &surfaces))
             .collect();
         receiver::check_total(document, &receivers);
-        if root.place_of("receiver").is_none() {
-            let required = "at least one [[receiver]], or nothing is measured but the ledger";
+        if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
+            let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
         }
         warn_unused(document, &material_names, &surfaces);
 
-        if let Some(camera) = root.table("camera", "[camera]") {
-            let required = "a scene without a camera: it is not available yet";
-            document.error_at(camera.place(), Kind::Unavailable, "[camera]", required);
-        }
+        let camera = root.table("camera", "[camera]").and_then(camera::read);
         let compare = root.table("compare", "[compare]").and_then(read_compare);
         let run = root.table("run", "[run]").map(read_run).unwrap_or_default();
         root.finish();
-        Self { emitters, materials, surfaces, receivers, compare, run }
+        Self { emitters, materials, surfaces, receivers, camera, compare, run }
     }
 }
 
@@ -214,6 +215,16 @@ fn unit(v: DVec3) -> Option<DVec3> {
         let scaled = v / largest;
         scaled / scaled.length()
     })
+}
+
+/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the
+/// angle between their lines is below 1e-9, where rounding would choose the direction.
+fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
+    let sine = v.cross(axis).length();
+    // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.
+    let once = unit(v - axis * v.dot(axis))?;
+    let part = unit(once - axis * once.dot(axis))?;
+    (sine >= 1e-9).then_some(part)
 }
 
 /// A required direction; the zero vector is an error.
