@@ -169,12 +169,11 @@ def receiver_sensor(scene, name, eye):
     if distance <= 0:
         raise SystemExit("the eye must stand before the front of the receiver")
     cells = receiver.get("cells", [256, 256])
-    # The film is as wide as the receiver; square pixels are not required of a film whose aspect follows from the
-    # transform: the world is squeezed along v instead.
-    squeeze = (cells[1] / cells[0]) / (height / width)
+    if abs(width * cells[1] - height * cells[0]) > 1e-9 * width * cells[1]:
+        raise SystemExit("the receiver's cells must be squares: the film there has no others")
     matrix = np.eye(4)
     matrix[:3, 0] = -unit_u  # the camera's own x points to the left of its picture
-    matrix[:3, 1] = unit_v / squeeze
+    matrix[:3, 1] = unit_v
     matrix[:3, 2] = -normal
     matrix[:3, 3] = eye
     return {
