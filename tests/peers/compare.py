@@ -5,7 +5,8 @@
 
 Blocks of pixels are averaged first, so that a block's value is close to normal. The standard error of a block is the spread
 of its value over independent runs: the peer's renders, and ours if several files are given. Of one file of ours the
-channel `standard_error` is used, as if pixels were independent; quasi-Monte Carlo makes a block's true error smaller.
+channel `standard_error` is used, as if pixels were independent: quasi-Monte Carlo makes the true error of a map's block
+smaller, and a density estimate, whose photons count in many pixels, makes it larger. Several files are right for both.
 
 Three questions, each with a probability p of as much or more by chance: is the total the same; are the blocks together
 (chi-square); is the worst block (Sidak). The comparison fails, exit code 1, if the least p is below 1e-3 / 3. Student's t is
@@ -45,7 +46,7 @@ class Estimate:
             self.variance = blocks(variance, block) / block**2
             self.total_variance = variance.mean() / variance.size
             self.freedom = np.inf
-        self.bias = np.zeros_like(self.mean) if bias is None else blocks(bias, block)
+        self.bias = np.zeros_like(self.mean) if bias is None else np.abs(blocks(bias, block))
 
 
 def blocks(image, size):
@@ -76,7 +77,7 @@ def read_ours(paths, block, channel):
         raise SystemExit("one file's standard error is that of luminance; give several files for another channel")
     if len(paths) == 1 and not np.isfinite(errors).all():
         raise SystemExit(f"{paths[0]}: no standard error everywhere; give several files of different seeds")
-    return Estimate(values, block, errors[0] ** 2, np.abs(biases).mean(axis=0))
+    return Estimate(values, block, errors[0] ** 2, biases.mean(axis=0))
 
 
 def read_theirs(path, block, channel):

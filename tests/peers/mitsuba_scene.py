@@ -14,6 +14,7 @@ import mitsuba as mi
 import numpy as np
 
 mi.set_variant("scalar_rgb")
+mi.set_log_level(mi.LogLevel.Warn)
 
 EMITTER_KEYS = {
     "isotropic": {"position", "flux_lm"},
@@ -155,37 +156,46 @@ def _rectangle_of(scene, name):
 
 
 def receiver_sensor(scene, name, eye):
-    """A pinhole at `eye`, its film parallel to the receiver and shifted, so that each pixel is one cell of it.
+    """A pinhole at `eye`, its film parallel to the receiver, so that each pixel is one cell of it.
 
-    Pixel row 0 is the row of largest v, as in caustix' maps.
+    Returns the sensor and the part of its picture, rows and columns, that is the receiver. Row 0 is the row of largest v, as
+    in caustix' maps. The film is centred on the foot of the eye and as large as it takes to hold the receiver: Mitsuba's
+    particle tracer takes no notice of a shifted principal point.
     """
     receiver, surface = _rectangle_of(scene, name)
-    edge_u, edge_v = np.array(surface["edge_u"]), np.array(surface["edge_v"])
-    width, height = np.linalg.norm(edge_u), np.linalg.norm(edge_v)
-    unit_u, unit_v = edge_u / width, edge_v / height
-    normal = np.cross(unit_u, unit_v)
+    edges = np.array([surface["edge_u"], surface["edge_v"]])
+    lengths = np.linalg.norm(edges, axis=1)
+    units = edges / lengths[:, None]
+    cells = np.array(receiver.get("cells", [256, 256]))
+    sizes = lengths / cells
+    if abs(sizes[0] / sizes[1] - 1) > 1e-9:
+        raise SystemExit("the receiver's cells must be squares: the film there has no others")
+    normal = np.cross(*units)
     offset = np.array(eye) - np.array(surface["corner"])
     distance = offset @ normal
     if distance <= 0:
         raise SystemExit("the eye must stand before the front of the receiver")
-    cells = receiver.get("cells", [256, 256])
-    if abs(width * cells[1] - height * cells[0]) > 1e-9 * width * cells[1]:
-        raise SystemExit("the receiver's cells must be squares: the film there has no others")
+    # In cells from the corner (u, v) = (0, 0); twice that, to hit the middle of a cell too.
+    foot_twice = np.rint(2 * (units @ offset) / sizes).astype(int)
+    if np.abs(foot_twice * sizes / 2 - units @ offset).max() > 1e-6 * sizes[0]:
+        raise SystemExit("the foot of the eye must be a corner or the middle of a cell")
+    pixels = np.maximum(np.abs(foot_twice), np.abs(2 * cells - foot_twice))
+    start = (pixels - foot_twice) // 2  # the receiver's corner, in pixels from the film's lower left
     matrix = np.eye(4)
-    matrix[:3, 0] = -unit_u  # the camera's own x points to the left of its picture
-    matrix[:3, 1] = unit_v
+    matrix[:3, 0] = -units[0]  # the camera's own x points to the left of its picture
+    matrix[:3, 1] = units[1]
     matrix[:3, 2] = -normal
     matrix[:3, 3] = eye
-    return {
+    sensor = {
         "type": "perspective",
-        "fov": math.degrees(2 * math.atan(width / 2 / distance)),
+        "fov": math.degrees(2 * math.atan(pixels[0] * sizes[0] / 2 / distance)),
         "fov_axis": "x",
         "near_clip": 1e-3 * distance,
-        "principal_point_offset_x": 0.5 - offset @ unit_u / width,
-        "principal_point_offset_y": offset @ unit_v / height - 0.5,
         "to_world": mi.ScalarTransform4f(matrix),
-        "film": _film(*cells),
+        "film": _film(int(pixels[0]), int(pixels[1])),
     }
+    top = int(pixels[1] - start[1] - cells[1])
+    return sensor, (slice(top, top + int(cells[1])), slice(int(start[0]), int(start[0] + cells[0])))
 
 
 def receiver_reflectance(scene, name):

@@ -30,7 +30,7 @@ def main():
     what.add_argument("--camera", action="store_true", help="the scene's own camera")
     parser.add_argument("--eye", type=float, nargs=3, help="where to look at the receiver from: nothing may stand between")
     parser.add_argument("--integrator", choices=["path", "ptracer"], default="path")
-    parser.add_argument("--samples", type=int, default=64, help="samples a pixel, each render")
+    parser.add_argument("--samples", type=int, default=64, help="samples a pixel, each render; the particle tracer: photons a pixel")
     parser.add_argument("--renders", type=int, default=16)
     parser.add_argument("--seed", type=int, default=1, help="the first render's; the others follow")
     parser.add_argument("-o", "--output", required=True)
@@ -39,11 +39,12 @@ def main():
     scene = mitsuba_scene.read(arguments.scene)
     if arguments.camera:
         sensor, factor, events = mitsuba_scene.camera_sensor(scene), 1.0, "all"
+        part = (slice(None), slice(None))
     else:
         if arguments.eye is None:
             parser.error("--receiver needs --eye")
         name = arguments.receiver
-        sensor = mitsuba_scene.receiver_sensor(scene, name, arguments.eye)
+        sensor, part = mitsuba_scene.receiver_sensor(scene, name, arguments.eye)
         # A lambertian surface has luminance reflectance / pi times its illuminance.
         factor = math.pi / mitsuba_scene.receiver_reflectance(scene, name)
         events = mitsuba_scene.receiver_events(scene, name)
@@ -57,7 +58,7 @@ def main():
         direct_only = integrator | {"max_depth": 2}
         other_seeds = range(1_000_000 + arguments.seed, 1_000_000 + arguments.seed + arguments.renders)
         renders -= _render(world, direct_only, other_seeds, arguments.samples)
-    np.savez_compressed(arguments.output, renders=renders * factor, version=mi.__version__)
+    np.savez_compressed(arguments.output, renders=renders[:, *part] * factor, version=mi.__version__)
     print(f"{arguments.output}: {arguments.renders} renders with Mitsuba {mi.__version__}, {time.time() - start:.0f} s")
 
 
