@@ -44,7 +44,8 @@ pub fn files() -> Vec<(&'static str, String)> {
     let (wet, dry): (Vec<Point>, Vec<Point>) = inside.iter().partition(|p| p.z <= glass.level_m);
     // The level is one of the points, which both parts have.
     let level = wet.last().copied().into_iter();
-    let in_air: Vec<Point> = outside.into_iter().chain(dry.iter().rev().copied()).chain(level.clone()).collect();
+    let in_air: Vec<Point> =
+        outside.into_iter().chain(dry.iter().rev().copied()).chain(level.clone()).collect();
     let from_level: Vec<Point> = wet.iter().rev().copied().collect();
     let surface: Vec<Point> =
         level.clone().flat_map(|p| [p, Point { r: 0.5 * p.r, z: p.z }, Point { r: 0.0, z: p.z }]).collect();

@@ -45,11 +45,13 @@ pub(super) struct PixelSums<const C: usize> {
     pub bias: f64,
     /// Luminance that each set of samples makes.
     pub by_set: [f64; SETS as usize],
-    /// Of the luminance that each finished replicate's photons make: sum, and sum of squares.
+    /// Sum of squares of the luminance that each closed replicate's photons make, and the sum.
     pub photons: f64,
     pub photons_square: f64,
-    /// Luminance from the photons of the replicate that is not finished.
+    /// Luminance from the photons of the replicate that is open.
     pub open: f64,
+    /// Standard error of the luminance owed to places with hardly any photons.
+    pub sparse: f64,
 }
 
 impl<const C: usize> PixelSums<C> {
@@ -60,15 +62,26 @@ impl<const C: usize> PixelSums<C> {
         photons: 0.0,
         photons_square: 0.0,
         open: 0.0,
+        sparse: 0.0,
     };
 
-    /// A replicate's photons, or a part of them, make this luminance.
-    pub(super) fn add_replicate(&mut self, luminance: f64, finished: bool) {
-        self.open += luminance;
-        if finished {
+    /// Photons of a replicate make this luminance; `fresh`: of another one than those before, which is closed.
+    pub(super) fn add_replicate(&mut self, luminance: f64, fresh: bool) {
+        if fresh {
             self.photons += self.open;
             self.photons_square += self.open * self.open;
             self.open = 0.0;
+        }
+        self.open += luminance;
+    }
+
+    /// Another flux of a photon.
+    fn scale(&mut self, factor: f64) {
+        self.value = self.value.map(|v| v * factor);
+        self.by_set = self.by_set.map(|v| v * factor);
+        self.photons_square *= factor * factor;
+        for v in [&mut self.bias, &mut self.photons, &mut self.open, &mut self.sparse] {
+            *v *= factor;
         }
     }
 
@@ -79,7 +92,11 @@ impl<const C: usize> PixelSums<C> {
         let of_photons = match replicates {
             0 => 0.0,
             1 => f64::NAN,
-            _ => (r * self.photons_square - self.photons * self.photons).max(0.0) / (r - 1.0),
+            _ => {
+                let sum = self.photons + self.open;
+                let square = self.photons_square + self.open * self.open;
+                (r * square - sum * sum).max(0.0) / (r - 1.0) + self.sparse * self.sparse
+            }
         };
         let of_eye = if sets < 2 {
             f64::NAN
@@ -98,8 +115,8 @@ pub struct Sums<const C: usize> {
     pixels: [u32; 2],
     /// Tile by tile, each row by row; tiles at the right and lower end are whole, too.
     pub(super) tiles: Vec<PixelSums<C>>,
-    /// Replicates whose photons are all in.
-    pub(super) replicates: u32,
+    /// The replicate that is open: the last of which photons are in.
+    pub(super) open: u32,
     /// Sets of samples that there are.
     pub(super) sets: u32,
 }
@@ -123,7 +140,7 @@ impl<const C: usize> Sums<C> {
         }
         let [across, down] = pixels.map(|n| n.div_ceil(TILE) as usize);
         let tiles = vec![PixelSums::NOTHING; across * down * TILE_PIXELS];
-        Ok(Self { pixels, tiles, replicates: 0, sets: 0 })
+        Ok(Self { pixels, tiles, open: 0, sets: 0 })
     }
 
     /// Columns and rows.
@@ -131,9 +148,9 @@ impl<const C: usize> Sums<C> {
         self.pixels
     }
 
-    /// Replicates whose photons are all in.
-    pub fn replicates(&self) -> u32 {
-        self.replicates
+    /// Photons turned out to carry another flux: scales what is in so far, which must be light of photons alone.
+    pub fn scale(&mut self, factor: f64) {
+        self.tiles.iter_mut().for_each(|pixel| pixel.scale(factor));
     }
 
     /// Column and row of the first pixel of a tile.
@@ -148,11 +165,11 @@ impl<const C: usize> Sums<C> {
         &self.tiles[tile * TILE_PIXELS + (row % TILE * TILE + column % TILE) as usize]
     }
 
-    /// The picture of all passes so far.
+    /// The picture of all passes so far, in which there are photons of so many replicates.
     ///
     /// Standard error^2 = spread of the replicates' sums + spread of the sets of samples: that of the photons for these samples,
     /// and that of the samples for these photons.
-    pub fn finish(&self) -> Film<C> {
+    pub fn finish(&self, replicates: u32) -> Film<C> {
         let [columns, rows] = self.pixels;
         let number = columns as usize * rows as usize;
         let mut film = Film {
@@ -165,7 +182,7 @@ impl<const C: usize> Sums<C> {
             for column in 0..columns {
                 let sums = self.at(column, row);
                 film.value.push(sums.value);
-                film.standard_error.push(sums.variance(self.replicates, self.sets).sqrt());
+                film.standard_error.push(sums.variance(replicates, self.sets).sqrt());
                 film.bias.push(sums.bias);
             }
         }
@@ -191,8 +208,8 @@ mod tests {
     #[test]
     fn the_error_is_that_of_replicates_and_of_sets() {
         let mut sums = PixelSums::<1>::NOTHING;
-        for (part, finished) in [(1.0, false), (2.0, true), (5.0, true), (4.0, true)] {
-            sums.add_replicate(part, finished);
+        for (part, fresh) in [(1.0, false), (2.0, false), (5.0, true), (4.0, true)] {
+            sums.add_replicate(part, fresh);
         }
         sums.by_set = [11.0, 12.0, 13.0, 12.0];
         // Sum of three with variance 1: 3. Mean of four with variance 2/3: 1/6.

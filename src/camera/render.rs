@@ -24,10 +24,8 @@ pub struct Pass<'d, const C: usize> {
     /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run, so that passes add
     /// up.
     pub densities: &'d [Density<'d, C>],
-    /// Replicates that have photons in this pass.
+    /// Replicates that may have photons in this pass; the first may have had some in the pass before.
     pub replicates: Range<u32>,
-    /// Whether these replicates end with this pass. A pass that is a part of a replicate has one replicate.
-    pub finishes: bool,
     /// Whether emitters and the background are added: in one pass only.
     pub emission: bool,
     /// Whether direct light is added: in one pass only.
@@ -37,17 +35,22 @@ pub struct Pass<'d, const C: usize> {
 impl<'d, const C: usize> Pass<'d, C> {
     /// All there is: densities of all photons, of this many replicates.
     pub fn whole(densities: &'d [Density<'d, C>], replicates: u32) -> Self {
-        Self { densities, replicates: 0..replicates, finishes: true, emission: true, direct: true }
+        Self { densities, replicates: 0..replicates, emission: true, direct: true }
     }
 
     /// Emitters and the background alone: what is left to the eye where every photon is joined to the pinhole.
     pub fn emission() -> Self {
-        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false }
+        Self { densities: &[], replicates: 0..0, emission: true, direct: false }
     }
 
-    /// Further photons of these replicates.
-    pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>, finishes: bool) -> Self {
-        Self { densities, replicates, finishes, emission: false, direct: false }
+    /// Photons of these replicates.
+    pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>) -> Self {
+        Self { densities, replicates, emission: false, direct: false }
+    }
+
+    /// What needs no photons: direct light, emitters and the background.
+    pub fn without_photons() -> Self {
+        Self { densities: &[], replicates: 0..0, emission: true, direct: true }
     }
 }
 
@@ -86,8 +89,9 @@ pub fn render<const C: usize>(
     let pixels = view.spec.pixels;
     let killed = AtomicU64::new(0);
     let sets = SETS.min(view.spec.samples);
+    let open = sums.open;
     sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
-        let mut brush = Brush::new(view, pass, sets);
+        let mut brush = Brush::new(view, pass, sets, open);
         let corner = Sums::<C>::corner(pixels, tile);
         let mut done = 0;
         for (k, sums) in sums.iter_mut().enumerate() {
@@ -103,9 +107,7 @@ pub fn render<const C: usize>(
         killed.fetch_add(brush.killed, Ordering::Relaxed);
         progress(done);
     });
-    if pass.finishes {
-        sums.replicates += pass.replicates.len() as u32;
-    }
+    sums.open = pass.replicates.end.saturating_sub(1).max(open);
     sums.sets = sets;
     Ok(Rendered { complete: !interrupt.load(Ordering::Relaxed), killed: killed.into_inner() })
 }
@@ -115,16 +117,18 @@ struct Brush<'a, const C: usize> {
     view: &'a View<'a>,
     pass: &'a Pass<'a, C>,
     sets: u32,
+    /// The replicate whose photons came last before this pass.
+    open: u32,
     samples_per_set: u32,
     gathered: Gathered<C>,
     killed: u64,
 }
 
 impl<'a, const C: usize> Brush<'a, C> {
-    fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32) -> Self {
+    fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32, open: u32) -> Self {
         let samples_per_set = view.spec.samples.div_ceil(sets);
         let gathered = Gathered::new(pass.replicates.end as usize);
-        Self { view, pass, sets, samples_per_set, gathered, killed: 0 }
+        Self { view, pass, sets, open, samples_per_set, gathered, killed: 0 }
     }
 
     fn paint(&mut self, [column, row]: [u32; 2], sums: &mut PixelSums<C>) {
@@ -146,10 +150,11 @@ impl<'a, const C: usize> Brush<'a, C> {
             }
             sums.by_set[set as usize] += luminance(found) / f64::from(self.samples_per_set);
         }
-        sums.bias += bias(&self.gathered) * of_sample;
+        sums.bias += self.gathered.bias() * of_sample;
+        sums.sparse += self.gathered.sparse * of_sample;
         for replicate in self.pass.replicates.clone() {
             let luminance = self.gathered.by_replicate[replicate as usize] * of_sample;
-            sums.add_replicate(luminance, self.pass.finishes);
+            sums.add_replicate(luminance, replicate > self.open);
         }
     }
 
@@ -167,11 +172,6 @@ impl<'a, const C: usize> Brush<'a, C> {
         self.killed += path.killed;
         light
     }
-}
-
-/// Estimated bias of the luminance gathered, from the second bandwidth.
-fn bias<const C: usize>(gathered: &Gathered<C>) -> f64 {
-    luminance(gathered.value) - luminance(gathered.wide)
 }
 
 /// Luminance of one channel, which is that already, or of linear sRGB.

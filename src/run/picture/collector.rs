@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::scene::camera::CameraSpec;
 use crate::tally::Receivers;
 use crate::tally::photon_map::sink::Kept;
-use crate::tally::photon_map::{Channels, Photon, PhotonMap, PhotonStore};
+use crate::tally::photon_map::{Channels, Photon, PhotonStore};
 use crate::transport::parallel::Traced;
 
 use super::super::plan::Plan;
@@ -71,7 +71,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         Ok(Self {
             scene,
             watch,
-            eye: Eye::new(scene, spec, plan.replicates)?,
+            eye: Eye::new(scene, spec, plan.seed, plan.replicates, watch)?,
             store: PhotonStore::new(scene),
             capacity: capacity.unwrap_or(usize::MAX).max(1),
             held: Kept::default(),
@@ -234,12 +234,16 @@ impl<'a, const C: usize> Collector<'a, C> {
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
         let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
         let part = part * self.traced as f64 / standing_for.max(1) as f64;
-        let maps = held.map(|blocks| {
-            let radius_m = self.eye.search_radius_m(blocks.iter().map(Vec::len).sum());
-            PhotonMap::build(joined(blocks), frame, radius_m)
-        });
-        let bandwidths = self.bandwidths.get_or_insert_with(|| Bandwidths::choose(&self.eye, &maps, part));
-        self.eye.add(&maps, photon_lm, bandwidths, part, self.watch.camera)?;
+        let mut maps = self.eye.maps(held.map(joined), frame, self.bandwidths.as_ref());
+        let bandwidths = match self.bandwidths {
+            Some(bandwidths) => bandwidths,
+            None => {
+                let bandwidths = *self.bandwidths.insert(Bandwidths::choose(&self.eye, &maps, part));
+                maps = bandwidths.sorted(maps);
+                bandwidths
+            }
+        };
+        self.eye.add(&maps, photon_lm, &bandwidths, last && self.passes == 0)?;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
         let [caustic, diffuse] = &maps;
@@ -261,7 +265,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             replicates: self.replicates,
         });
         let chosen = self.bandwidths.map(|b| b.chosen());
-        let film = self.eye.finish(scale, self.replicates);
+        let (film, killed) = self.eye.finish(scale, self.replicates)?;
         let cost = Cost::of(&film);
         let summary = PictureSummary {
             method: crate::scene::camera::Method::Map,
@@ -270,6 +274,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             photons_kept: self.kept,
             passes: self.passes,
             bandwidth: chosen,
+            eye_paths_killed: killed,
             cost,
             time_s: self.camera_s,
             from_file: false,

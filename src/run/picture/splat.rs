@@ -22,7 +22,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     watch: Watch<'_>,
     carried: T,
 ) -> Result<(Outcome, Picture<C>)> {
-    let mut eye = Eye::<C>::new(scene, spec, plan.replicates)?;
+    let mut eye = Eye::<C>::new(scene, spec, plan.seed, plan.replicates, watch)?;
     let mut splat = Splat::<C>::new(scene, spec)?;
     let mut moments = SplatMoments::<C>::new(spec.pixels[0] as usize * spec.pixels[1] as usize);
     let mut joined = 0;
@@ -45,8 +45,9 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
         watch.interrupt,
     )?;
     let started = Instant::now();
-    eye.add_emitters(watch.camera)?;
-    let film = with_splats(eye.finish(1.0, outcome.replicates), &moments, &outcome);
+    eye.add_emitters()?;
+    let (film, killed) = eye.finish(1.0, 0)?;
+    let film = with_splats(film, &moments, &outcome);
     let cost = Cost::of(&film);
     let summary = PictureSummary {
         method: Method::Splat,
@@ -55,6 +56,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
         photons_kept: joined,
         passes: 1,
         bandwidth: None,
+        eye_paths_killed: killed,
         cost,
         time_s: started.elapsed().as_secs_f64(),
         from_file: false,

@@ -5,7 +5,7 @@ use crate::camera::Film;
 use crate::scene::camera::Method;
 
 /// A bandwidth that was chosen.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Chosen {
     /// Radius, m; of nearest neighbours their mean distance, where it is known.
     pub radius_m: Option<f64>,
@@ -37,6 +37,8 @@ pub struct PictureSummary {
     pub passes: u32,
     /// Of light that no surface scattered before, and of all other.
     pub bandwidth: Option<[Chosen; 2]>,
+    /// Eye paths that were ended because they did not end by themselves.
+    pub eye_paths_killed: u64,
     /// How good it is.
     pub cost: Cost,
     /// Time of the maps and the camera, s.
