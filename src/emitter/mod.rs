@@ -11,6 +11,7 @@ pub mod direct;
 pub mod isotropic;
 pub mod panel;
 pub mod photometric;
+mod spherical_rectangle;
 
 use glam::DVec3;
 
