@@ -7,6 +7,7 @@
 //! is given in `scene`.
 
 pub mod collimated;
+pub mod colour;
 pub mod isotropic;
 pub mod panel;
 pub mod photometric;
