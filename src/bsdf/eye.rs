@@ -55,6 +55,12 @@ impl EyeWeight {
 
 impl Throughput for EyeWeight {
     #[inline]
+    fn tinted(mut self, colour: [f64; 3]) -> Self {
+        self.weight.iter_mut().zip(colour).for_each(|(w, c)| *w *= c);
+        self
+    }
+
+    #[inline]
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
         self.attenuate(reflectance.by_channel(), chooser)
     }

@@ -9,6 +9,9 @@ use crate::units::LUMINANCE_OF_RGB;
 
 /// What a photon carries, and what a reflection does to it.
 pub trait Throughput: Copy + Send + Sync {
+    /// What a photon of light of this colour starts with, by channel with luminance 1 (linear sRGB), where a
+    /// photon of white light starts with this.
+    fn tinted(self, colour: [f64; 3]) -> Self;
     /// The photon meets a surface that reflects these parts: whether it goes on.
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool;
     /// The photon meets a table of this albedo by channel: whether it is scattered. `rest_goes_on`: what the table leaves is
@@ -47,6 +50,11 @@ pub struct Grey;
 
 impl Throughput for Grey {
     #[inline(always)]
+    fn tinted(self, _: [f64; 3]) -> Self {
+        self
+    }
+
+    #[inline(always)]
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
         chooser.happens(reflectance.luminous())
     }
@@ -78,6 +86,11 @@ impl Rgb {
 }
 
 impl Throughput for Rgb {
+    #[inline]
+    fn tinted(self, colour: [f64; 3]) -> Self {
+        Self { weight: product(self.weight, colour) }
+    }
+
     #[inline]
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
         let reflected = product(self.weight, reflectance.by_channel());
@@ -126,7 +139,7 @@ impl Fixed {
         Self { weight: [1.0; 3], left: reflections }
     }
 
-    /// Weights of red, green and blue: products of the reflectances so far, at most 1.
+    /// Weights of red, green and blue: those of the emitter's colour times the reflectances so far; at most 1 in white light.
     #[inline]
     pub fn weight(&self) -> [f64; 3] {
         self.weight
@@ -134,6 +147,11 @@ impl Fixed {
 }
 
 impl Throughput for Fixed {
+    #[inline]
+    fn tinted(self, colour: [f64; 3]) -> Self {
+        Self { weight: product(self.weight, colour), ..self }
+    }
+
     #[inline]
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, _: &mut C) -> bool {
         if self.left == 0 {

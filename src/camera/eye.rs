@@ -103,7 +103,7 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
         if let Some((luminance, distance_m)) = emitter.seen(origin, direction)
             && distance_m < within_m
         {
-            let colour = colour(scene, i);
+            let colour = scene.emitter_colour(i);
             (0..3).for_each(|c| sum[c] += luminance * colour[c]);
         }
     }
@@ -137,15 +137,10 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
             continue;
         }
         let illuminance_lx = light.illuminance_lx * light.towards.dot(hit.normal).abs();
-        let colour = colour(scene, i);
+        let colour = scene.emitter_colour(i);
         (0..3).for_each(|c| sum[c] += illuminance_lx * value[c] * colour[c]);
     }
     sum
-}
-
-/// An emitter's light by channel, of luminance 1.
-fn colour(_scene: &Scene, _emitter: usize) -> [f64; 3] {
-    [1.0; 3]
 }
 
 /// Where an eye path goes on: (direction, whether through the surface); `None` where it ends.

@@ -8,6 +8,7 @@
 
 pub mod collimated;
 pub mod direct;
+pub mod colour;
 pub mod isotropic;
 pub mod panel;
 pub mod photometric;

@@ -1,5 +1,5 @@
 //! The files of each receiver: an EXR for every one, a false-colour PNG where the cells lie in a plane or a (u, v) map, a
-//! CSV where they are faces of a mesh.
+//! CSV and a PLY where they are faces of a mesh.
 
 use std::io::Write;
 use std::path::Path;
@@ -14,6 +14,7 @@ use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
 
 use super::attributes::attributes;
+use super::ply::write_ply;
 use super::statistics::ReceiverStatistics;
 use super::text::{grouped, rounded, with_error};
 
@@ -41,6 +42,10 @@ pub fn write_receiver(
             let name = format!("{}.csv", receiver.name);
             write_faces(&directory.join(&name), scene, receiver, statistics)?;
             files.push(name);
+            let name = format!("{}.ply", receiver.name);
+            if write_ply(&directory.join(&name), scene, outcome, receiver, statistics)? {
+                files.push(name);
+            }
         }
     }
     Ok(files)

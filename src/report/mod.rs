@@ -9,6 +9,7 @@ pub mod json;
 pub mod maps;
 pub mod parts;
 pub mod picture;
+pub mod ply;
 pub mod polar;
 pub mod room;
 pub mod statistics;

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use crate::bsdf::tabulated::Options;
 use crate::bsdf::{Bsdf, Dielectric, Reference, Tabulated};
 use crate::emitter::collimated::CrossSection;
+use crate::emitter::colour::{WHITE, normalised, planckian};
 use crate::emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{
@@ -15,8 +16,9 @@ use crate::photometry::lm63;
 use crate::scattering;
 
 use super::description::{
-    BeamSection, Description, EmitterDescription, EmitterShape, Facing, HeightfieldDescription, MaterialKind,
-    Place, ReliefDescription, ShapeDescription, SurfaceDescription,
+    BeamSection, ColourDescription, Description, EmitterDescription, EmitterShape, Facing,
+    HeightfieldDescription, MaterialKind, Place, Placed, ReliefDescription, ShapeDescription,
+    SurfaceDescription,
 };
 use super::file::MOST_HEIGHTFIELD_CELLS;
 use super::receiver::ReceiverSpec;
@@ -60,7 +62,10 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
     }
     for e in &description.emitters {
         match emitter(description, e, &mut parts.warnings) {
-            Ok(emitter) => parts.emitters.push((e.name.clone(), emitter)),
+            Ok(emitter) => {
+                parts.emitters.push((e.name.clone(), emitter));
+                parts.emitter_colours.push(colour(description, e, &mut parts.warnings));
+            }
             Err(error) => errors.push(placed(description, e.place, error)),
         }
     }
@@ -281,6 +286,23 @@ fn emitter(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnosti
         }
         EmitterShape::Panel { width, height } => {
             Ok(Emitter::Panel(Panel::new(position, aim, up, [*width, *height], required_flux(e)?)))
+        }
+    }
+}
+
+/// The colour of an emitter's light; what no sRGB colour can show is clipped and said.
+fn colour(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnostic>) -> [f64; 3] {
+    let Some(Placed { value, place }) = e.colour else { return WHITE };
+    match value {
+        ColourDescription::Rgb(rgb) => normalised(rgb).unwrap_or(WHITE),
+        ColourDescription::Cct(cct_k) => {
+            let (rgb, clipped) = planckian(cct_k);
+            if clipped {
+                let found = format!("cct_k = {cct_k}, a light more saturated than sRGB can show");
+                let required = "about 1900 K or more; its blue is taken as 0 instead of below";
+                warnings.push(d.diagnostic(place, Kind::Range, found, required));
+            }
+            rgb
         }
     }
 }

@@ -142,10 +142,21 @@ pub struct EmitterDescription {
     pub frame: Frame,
     /// Flux in lumens; `None` (photometric emitters only): the file's candela as they stand.
     pub flux_lm: Option<f64>,
+    /// Colour of its light; `None`: white.
+    pub colour: Option<Placed<ColourDescription>>,
     /// What it is.
     pub shape: EmitterShape,
     /// The header `[[emitter]]`.
     pub place: Place,
+}
+
+/// The colour of light, as a scene names it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ColourDescription {
+    /// Linear sRGB in any one unit: no channel is negative, one is positive.
+    Rgb([f64; 3]),
+    /// That of a black body of this temperature, K.
+    Cct(f64),
 }
 
 /// The directions of an emitter: orthogonal unit vectors.

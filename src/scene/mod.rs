@@ -15,8 +15,10 @@ pub mod requires;
 pub mod source;
 pub mod suggest;
 pub mod toml_table;
+pub mod without_camera;
 
 use crate::bsdf::{Bsdf, Tabulated};
+use crate::emitter::colour::WHITE;
 use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
@@ -59,6 +61,7 @@ pub struct Scene {
     pub warnings: Vec<Diagnostic>,
     bsdfs: Vec<Bsdf>,
     starts: Vec<Whereabouts>,
+    emitter_colours: Vec<[f64; 3]>,
 }
 
 /// The parts of a scene, for those who build one in code.
@@ -68,6 +71,8 @@ pub struct SceneParts {
     pub surfaces: Vec<(Surface, Bsdf)>,
     /// Emitters with their names.
     pub emitters: Vec<(String, Emitter)>,
+    /// Colours of the emitters, linear sRGB of luminance 1 ([`crate::emitter::colour`]); emitters beyond the last are white.
+    pub emitter_colours: Vec<[f64; 3]>,
     /// Receivers.
     pub receivers: Vec<ReceiverSpec>,
     /// The fixed number of reflections of `[compare]`, if there is one.
@@ -137,6 +142,7 @@ impl Scene {
                 warnings: parts.warnings,
                 bsdfs,
                 starts,
+                emitter_colours: parts.emitter_colours,
             }),
             _ => Err(errors),
         }
@@ -155,7 +161,19 @@ impl Scene {
 
     /// Whether anything in it treats channels differently: then photons carry a weight for each.
     pub fn is_coloured(&self) -> bool {
+        let has_colour = |colour: &[f64; 3]| *colour != WHITE;
+        let [r, g, b] = self.camera.as_ref().map_or([0.0; 3], |camera| camera.background_cd_m2);
         self.bsdfs.iter().any(Bsdf::is_coloured)
+            || self.emitter_colours.iter().any(has_colour)
+            || r != g
+            || g != b
+    }
+
+    /// The colour of an emitter's light: linear sRGB of luminance 1.
+    #[inline]
+    pub fn emitter_colour(&self, emitter: usize) -> [f64; 3] {
+        // No index that could fail, so that a walk which carries no colour does not even look.
+        self.emitter_colours.get(emitter).copied().unwrap_or(WHITE)
     }
 
     /// The side state of photons that leave an emitter.

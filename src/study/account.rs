@@ -4,7 +4,7 @@
 //! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
 //! integrals.
 
-use crate::bsdf::{Bsdf, Grey, Incidence, Rgb};
+use crate::bsdf::{Bsdf, Grey, Incidence, Rgb, Throughput};
 use crate::emitter::Emitter;
 use crate::run::Algorithm;
 use crate::sample::choose::Reusable;
@@ -119,7 +119,8 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
         let start = scene.start(emitter);
         let exceptions = &mut Exceptions::default();
         let end = if scene.is_coloured() {
-            walk(scene, emission, start, Rgb::WHITE, &mut chooser, &mut sink, exceptions)
+            let carried = Rgb::WHITE.tinted(scene.emitter_colour(emitter));
+            walk(scene, emission, start, carried, &mut chooser, &mut sink, exceptions)
         } else {
             walk(scene, emission, start, Grey, &mut chooser, &mut sink, exceptions)
         };

@@ -103,8 +103,8 @@ impl Order {
     }
 }
 
-/// Traces the photons of these indices, each of which starts with the throughput `carried`: [`crate::bsdf::Grey`] unless the
-/// scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
+/// Traces the photons of these indices, each of which starts with the throughput `carried` in its emitter's colour:
+/// [`crate::bsdf::Grey`] unless the scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
 pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     points: &P,
@@ -151,6 +151,7 @@ fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
         traced.ledger.begin(emitter);
         let exceptions = &mut traced.census.exceptions;
         let start = scene.start(emitter);
+        let carried = carried.tinted(scene.emitter_colour(emitter));
         let end = walk(scene, emission, start, carried, &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
         traced.census.count(coordinates.drawn(), coordinates.drawn_for());

@@ -64,6 +64,7 @@ fn trace_batch<P: Points, T: Throughput, S: Weighing<T>>(
         if weight > 0.0 {
             sink.weigh(weight);
             let start = scene.start(emitter);
+            let carried = carried.tinted(scene.emitter_colour(emitter));
             walk(scene, emission, start, carried, &mut coordinates, sink, &mut exceptions);
         }
         photons += 1;

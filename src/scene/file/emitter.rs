@@ -4,11 +4,21 @@ use glam::DVec3;
 
 use super::names::Names;
 use super::{COORDINATE, LENGTH, direction, orthogonal_part};
+use crate::emitter::colour::CCT_RANGE_K;
 use crate::error::Kind;
-use crate::scene::description::{BeamSection, EmitterDescription, EmitterShape, Frame};
+use crate::scene::description::{
+    BeamSection, ColourDescription, EmitterDescription, EmitterShape, Frame, Place, Placed,
+};
 use crate::scene::toml_table::{Interval, Table};
 
 const FLUX: Interval = Interval { low: 1e-9, high: 1e12, words: "a flux from 1e-9 to 1e12 lm" };
+
+const CHANNEL: Interval = Interval { low: 0.0, high: 1e9, words: "a part of light from 0 to 1e9" };
+const TEMPERATURE: Interval = Interval {
+    low: CCT_RANGE_K[0],
+    high: CCT_RANGE_K[1],
+    words: "a colour temperature from 1000 to 15000 K",
+};
 
 #[derive(Clone, Copy)]
 enum Type {
@@ -44,6 +54,7 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
     let position = table.vector("position", &COORDINATE);
     let position = table.require("position", position, "[x, y, z] in metres");
     let flux_lm = table.number("flux_lm", &FLUX);
+    let colour = read_colour(&mut table);
     let (shape, frame) = match kind {
         Type::Photometric => {
             let file = table.path("file");
@@ -66,7 +77,36 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
         }
     };
     table.finish();
-    Some(EmitterDescription { name, position: position?, frame: frame?, flux_lm, shape: shape?, place })
+    Some(EmitterDescription {
+        name,
+        position: position?,
+        frame: frame?,
+        flux_lm,
+        colour,
+        shape: shape?,
+        place,
+    })
+}
+
+/// `colour = [r, g, b]`, `cct_k = 3000`, or neither.
+fn read_colour(table: &mut Table<'_, '_>) -> Option<Placed<ColourDescription>> {
+    let rgb = table.numbers::<3>("colour", &CHANNEL);
+    let cct_k = table.number("cct_k", &TEMPERATURE);
+    let (rgb_place, cct_place) = (table.place_of("colour"), table.place_of("cct_k"));
+    if rgb_place.is_some() && cct_place.is_some() {
+        table.error("cct_k", Kind::Range, "either colour or cct_k, not both");
+        return None;
+    }
+    if rgb == Some([0.0; 3]) {
+        table.error("colour", Kind::Range, "a colour that is not black: flux_lm says how bright it is");
+        return None;
+    }
+    let placed = |value, place: Option<Place>| place.map(|place| Placed { value, place });
+    match (rgb, cct_k) {
+        (Some(rgb), _) => placed(ColourDescription::Rgb(rgb), rgb_place),
+        (None, Some(cct_k)) => placed(ColourDescription::Cct(cct_k), cct_place),
+        (None, None) => None,
+    }
 }
 
 /// `aim` and `up`, made orthogonal.

@@ -1,0 +1,87 @@
+//! Receivers on meshes as PLY: the mesh with its numbers on every face, for viewers of meshes.
+//!
+//! Binary, little-endian. Vertices: `x`, `y`, `z` (m, double). Faces, in the order of the CSV: `vertex_indices`; `quality` and
+//! `illuminance_lx` (the same number: MeshLab knows `quality` by itself, others show names as they are); `standard_error_lx`
+//! (NaN where there is none); `hits`; `red`, `green`, `blue`: false colours of illuminance, for viewers such as ParaView, whose
+//! reader of PLY takes colours of faces and no other numbers.
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::error::Result;
+use crate::geometry::{Mesh, Shape};
+use crate::image::atomic::write_atomically;
+use crate::image::false_colour::value_colour;
+use crate::image::scale::{Axis, Scale};
+use crate::run::Outcome;
+use crate::scene::Scene;
+use crate::scene::receiver::Receiver;
+
+use super::statistics::ReceiverStatistics;
+
+/// Writes the faces of one receiver; false, and no file, where its surface is no mesh.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_ply(
+    path: &Path,
+    scene: &Scene,
+    outcome: &Outcome,
+    receiver: &Receiver,
+    statistics: &ReceiverStatistics,
+) -> Result<bool> {
+    let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize];
+    let Shape::Mesh(mesh) = &surface.shape else { return Ok(false) };
+    let comments = [
+        format!("caustix {}", env!("CARGO_PKG_VERSION")),
+        format!("receiver {} on surface {}", receiver.name, surface.name),
+        format!("{} photons, seed {}", outcome.photons, outcome.plan.seed),
+        format!("scene sha256 {}", scene.identity.sha256),
+        "quality = illuminance_lx; lengths in metres".to_string(),
+    ];
+    write_atomically(path, |out| {
+        out.write_all(header(mesh, &comments).as_bytes())?;
+        for vertex in mesh.vertices() {
+            for x in vertex.to_array() {
+                out.write_all(&x.to_le_bytes())?;
+            }
+        }
+        let axis = Axis::fit(&statistics.illuminance_lx, Scale::Auto);
+        for face in 0..mesh.triangles().len() {
+            out.write_all(&face_bytes(mesh, statistics, &axis, face))?;
+        }
+        Ok(())
+    })?;
+    Ok(true)
+}
+
+fn header(mesh: &Mesh, comments: &[String]) -> String {
+    let mut text = String::from("ply\nformat binary_little_endian 1.0\n");
+    for comment in comments {
+        text += &format!("comment {comment}\n");
+    }
+    text += &format!("element vertex {}\n", mesh.vertices().len());
+    text += "property double x\nproperty double y\nproperty double z\n";
+    text += &format!("element face {}\n", mesh.triangles().len());
+    text += "property list uchar int vertex_indices\n";
+    text += "property float quality\nproperty float illuminance_lx\nproperty float standard_error_lx\n";
+    text += "property uint hits\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+    text
+}
+
+/// Corners, numbers and colour of one face.
+fn face_bytes(mesh: &Mesh, s: &ReceiverStatistics, axis: &Axis, face: usize) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(32);
+    bytes.push(3);
+    for corner in mesh.triangles()[face] {
+        // An index as int: meshes are capped far below 2^31 vertices.
+        bytes.extend(corner.to_le_bytes());
+    }
+    let lux = s.illuminance_lx[face];
+    for number in [lux, lux, s.standard_error_lx[face]] {
+        bytes.extend((number as f32).to_le_bytes());
+    }
+    bytes.extend(u32::try_from(s.hits[face]).unwrap_or(u32::MAX).to_le_bytes());
+    bytes.extend(value_colour(lux, axis).to_srgb());
+    bytes
+}
