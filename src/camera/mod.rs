@@ -4,5 +4,6 @@
 //! the factor (n1/n2)^2. docs/METHOD.md, "The picture".
 
 pub mod film;
+pub mod splat;
 
 pub use film::Film;
