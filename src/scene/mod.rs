@@ -15,6 +15,7 @@ pub mod requires;
 pub mod source;
 pub mod suggest;
 pub mod toml_table;
+pub mod without_camera;
 
 use crate::bsdf::{Bsdf, Tabulated};
 use crate::emitter::{Emitter, Emitters};

@@ -13,14 +13,14 @@ use crate::scene::Scene;
 use crate::scene::camera::CameraSpec;
 use crate::tally::Receivers;
 use crate::tally::photon_map::sink::Kept;
-use crate::tally::photon_map::{Channels, Photon, PhotonMap, PhotonStore};
+use crate::tally::photon_map::{Channels, Photon, PhotonMap, PhotonStore, SavedMap};
 use crate::transport::parallel::Traced;
 
 use super::super::plan::Plan;
 use super::super::tracer::Tracer;
 use super::eye::{Bandwidths, Eye, Seen};
 use super::summary::{Cost, PictureSummary};
-use super::{KeptPhotons, Picture, Watch};
+use super::{Picture, Watch};
 
 /// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
 const fn bytes_of_photon<const C: usize>() -> u64 {
@@ -35,6 +35,7 @@ fn with_reserve(photons: f64) -> f64 {
 /// Photons on their way into a picture.
 pub(super) struct Collector<'a, const C: usize> {
     scene: &'a Scene,
+    plan: Plan,
     watch: Watch<'a>,
     eye: Eye<'a, C>,
     store: PhotonStore<C>,
@@ -51,7 +52,6 @@ pub(super) struct Collector<'a, const C: usize> {
     whole: bool,
     /// Replicates of all that was accepted.
     replicates: u32,
-    photons_per_replicate: u64,
     /// Photons of the run as planned.
     planned: u64,
     bandwidths: Option<Bandwidths>,
@@ -77,6 +77,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         let capacity = usize::try_from(spec.photon_memory_bytes / bytes_of_photon::<C>());
         Ok(Self {
             scene,
+            plan: *plan,
             watch,
             eye: Eye::new(scene, spec, plan)?,
             store: PhotonStore::new(scene),
@@ -88,7 +89,6 @@ impl<'a, const C: usize> Collector<'a, C> {
             held_of: 0..0,
             whole: true,
             replicates: 0,
-            photons_per_replicate: plan.photons_per_replicate,
             planned: plan.photons(),
             bandwidths: None,
             passes: 0,
@@ -110,7 +110,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         carried: T,
     ) -> Result<Traced> {
         let mut all = Traced::new(self.scene);
-        let (n, from) = (self.photons_per_replicate, tracer.photons());
+        let (n, from) = (self.plan.photons_per_replicate, tracer.photons());
         // A pass is of whole replicates or of a part of one: the camera's error comes from whole ones.
         if tracer.replicate() > 0 && from == 0 && self.foretold(n) > self.room() {
             self.pass_unless_empty()?;
@@ -196,7 +196,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             self.held_of.start = replicate;
         }
         self.held_of.end = replicate + 1;
-        self.whole = to == self.photons_per_replicate;
+        self.whole = to == self.plan.photons_per_replicate;
         self.replicates = self.replicates.max(replicate + 1);
     }
 
@@ -234,14 +234,14 @@ impl<'a, const C: usize> Collector<'a, C> {
     }
 
     /// Takes the photons of another run of the scene for its own.
-    pub(super) fn adopt(&mut self, kept: KeptPhotons<C>) {
-        self.planned = kept.traced;
-        self.replicates = kept.replicates;
-        (self.held_of, self.whole) = (0..kept.replicates, true);
-        self.traced = kept.traced;
-        self.kept = kept.photons.len() as u64;
-        self.held_photons = kept.photons.len();
-        let (scattered, not): (Vec<_>, Vec<_>) = kept.photons.into_iter().partition(Photon::is_scattered);
+    pub(super) fn adopt(&mut self, saved: SavedMap<C>) {
+        self.planned = saved.photons_traced;
+        self.replicates = saved.replicates;
+        (self.held_of, self.whole) = (0..saved.replicates, true);
+        self.traced = saved.photons_traced;
+        self.kept = saved.photons.len() as u64;
+        self.held_photons = saved.photons.len();
+        let (scattered, not): (Vec<_>, Vec<_>) = saved.photons.into_iter().partition(Photon::is_scattered);
         self.held = [vec![not], vec![scattered]];
     }
 
@@ -294,11 +294,14 @@ impl<'a, const C: usize> Collector<'a, C> {
     /// Those of a pass.
     pub(super) fn finish(mut self) -> Result<Picture<C>> {
         let kept = self.pass(true)?;
-        let photons = kept.map(|photons| KeptPhotons {
+        let photons = kept.map(|photons| SavedMap {
+            scene_hash: super::hash_of_photons(self.scene, &self.plan),
+            settings: super::settings_of(&self.plan),
+            photons_traced: self.traced,
+            replicates: self.replicates,
+            photon_lm: self.scene.emitters.flux_lm() / self.traced.max(1) as f64,
             frame: self.store.frame(),
             photons,
-            traced: self.traced,
-            replicates: self.replicates,
         });
         let chosen = self.bandwidths.map(|b| b.chosen());
         let film = self.eye.finish();

@@ -3,11 +3,13 @@
 //! A photon is kept at each arrival on a surface that scatters (Lambertian or tabulated) except the first when no event
 //! preceded it: that light is direct, and the camera finds it by shadow rays.
 
+pub mod file;
 pub mod record;
 pub mod sink;
 
 use glam::DVec3;
 
+pub use file::SavedMap;
 pub use record::{Frame, Photon};
 pub use sink::{Channels, PhotonSink, PhotonStore};
 

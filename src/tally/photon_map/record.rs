@@ -36,6 +36,22 @@ impl Frame {
         Self { low, step: (high - low) / 4_294_967_295.0 }
     }
 
+    /// Length of a step along each axis, m.
+    #[inline]
+    pub fn steps_m(&self) -> DVec3 {
+        self.step
+    }
+
+    /// The position of the integers 0, m.
+    pub fn low(&self) -> DVec3 {
+        self.low
+    }
+
+    /// The frame of these numbers, as [`Frame::low`] and [`Frame::steps_m`] give them.
+    pub fn from_steps(low: DVec3, step: DVec3) -> Self {
+        Self { low, step }
+    }
+
     /// The integers of a position in the box.
     #[inline]
     pub fn cell(&self, position: DVec3) -> [u32; 3] {
