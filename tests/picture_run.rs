@@ -8,12 +8,14 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use caustix::bsdf::{Bsdf, Dielectric, Reflectance};
 use caustix::camera::Film;
 use caustix::error::Kind;
-use caustix::run::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture};
+use caustix::run::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
 use caustix::run::{Outcome, Plan, StoppedBy, trace};
+use caustix::scene::Identity;
 use caustix::scene::camera::{Bandwidth, CameraSpec};
 use caustix::scene::description::{ReceiverEvents, ReceiverSide};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneParts};
+use caustix::tally::photon_map::SavedMap;
 use glam::DVec3;
 use picture_support::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
 
@@ -190,4 +192,44 @@ fn an_interrupted_run_leaves_the_picture_of_what_was_traced() {
 
 fn total(film: &Film<1>) -> f64 {
     film.value.iter().map(|v| v[0]).sum()
+}
+
+#[test]
+fn a_saved_map_is_of_its_scene_and_settings_and_undamaged() {
+    let plan = plan(1 << 13, 2);
+    let scene = ball_on_table(grey(0.4), ROOM, true);
+    let (_, fresh) = pictured(&scene, &plan, true);
+    let mut bytes = Vec::new();
+    fresh.photons.unwrap().to_writer(&mut bytes).unwrap();
+    let hash = hash_of_photons(&scene, &plan);
+    let read = SavedMap::<1>::from_bytes(&bytes, &hash).unwrap();
+    let again = picture_of_saved(&scene, &plan, read, unwatched(&AtomicBool::new(false))).unwrap();
+    assert!(bits(&again.film) == bits(&fresh.film));
+    for at in [0, 9, bytes.len() / 2, bytes.len() - 1] {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 4;
+        assert!(SavedMap::<1>::from_bytes(&damaged, &hash).is_err(), "byte {at}");
+    }
+    assert!(SavedMap::<1>::from_bytes(&bytes[..bytes.len() - 50], &hash).is_err());
+    let other = Plan { seed: 8, ..plan };
+    let refused = SavedMap::<1>::from_bytes(&bytes, &hash_of_photons(&scene, &other));
+    assert_eq!(refused.unwrap_err().kind(), Kind::Range);
+}
+
+#[test]
+fn the_hash_of_photons_is_of_all_but_the_camera() {
+    let plan = plan(1 << 13, 2);
+    let of = |text: &str, file: &str| {
+        let mut scene = ball_on_table(grey(0.4), ROOM, true);
+        let files = vec![("a.ies".to_string(), file.to_string())];
+        scene.identity = Identity { text: text.into(), files, ..Identity::default() };
+        hash_of_photons(&scene, &plan)
+    };
+    let camera = "[camera]\nposition = [0, 0, 1]\n";
+    let wall = "[material.wall]\ntype = \"absorber\"\n";
+    let bare = of(wall, "aa");
+    assert_eq!(of(&format!("{camera}{wall}"), "aa"), bare);
+    assert_eq!(of(&format!("{}{wall}", camera.replace('1', "2")), "aa"), bare);
+    assert_ne!(of(&wall.replace("absorber", "mirror"), "aa"), bare);
+    assert_ne!(of(wall, "ab"), bare);
 }
