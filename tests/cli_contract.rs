@@ -122,6 +122,16 @@ fn wrong_usage_exits_2_and_help_and_version_exit_0() {
 }
 
 #[test]
+fn photons_are_saved_and_seen_again_by_a_camera_alone() {
+    let s = Stranger::new();
+    fs::write(s.path("plate.toml"), ABSORBER_SCENE).unwrap();
+    s.is_told("render plate.toml --map old.map", 1, &["--map", "without [camera]", "a scene with a camera"]);
+    s.is_told("render plate.toml --save-map new.map", 1, &["--save-map", "without [camera]"]);
+    s.is_told("render plate.toml --save-map new.map --map old.map", 2, &["error:", "cannot be used with"]);
+    assert!(!s.path("caustix-out").exists(), "refused before anything is made");
+}
+
+#[test]
 fn impossible_requests_exit_1_and_say_what_is_required() {
     let s = Stranger::new();
     for (line, found, required) in [

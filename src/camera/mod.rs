@@ -11,6 +11,7 @@ pub mod film;
 pub mod filter;
 pub mod pinhole;
 pub mod render;
+pub mod splat;
 pub mod view;
 
 pub use film::{Film, Sums};

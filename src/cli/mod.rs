@@ -5,6 +5,7 @@ pub mod check;
 pub mod compare;
 mod compare_room;
 pub mod photometry;
+mod picture;
 mod progress;
 pub mod render;
 pub mod sample;
@@ -88,6 +89,12 @@ pub struct RenderArgs {
     /// Threads [default: all cores]. The results do not depend on it.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { render::MAX_THREADS as u64 }>)]
     pub threads: Option<u32>,
+    /// Save the photons that the scene's camera sees, for other views of the same light.
+    #[arg(long, value_name = "FILE", conflicts_with = "map")]
+    pub save_map: Option<PathBuf>,
+    /// Trace nothing: the camera's picture of photons saved by --save-map under the same settings.
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
     /// Not available yet.
     #[arg(long, value_name = "PERCENT", hide = true)]
     pub error: Option<String>,
@@ -113,6 +120,8 @@ impl Default for RenderArgs {
             seed: None,
             replicates: None,
             threads: None,
+            save_map: None,
+            map: None,
             error: None,
             time: None,
             resume: false,

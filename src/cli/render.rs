@@ -5,15 +5,17 @@ use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::image::atomic::write_atomically;
+use crate::report::camera::CameraReport;
 use crate::report::statistics::ReceiverStatistics;
 use crate::report::{Report, maps, text};
+use crate::run::picture::{AnyPicture, Watch, trace_picture};
 use crate::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace};
 use crate::scene::description::{Description, RunDescription};
 use crate::scene::{Scene, build, file};
 use crate::sequence::Sequence;
 
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::{RenderArgs, count, exit, fail, not_available, print, say, warn};
+use super::{RenderArgs, count, exit, fail, not_available, picture, print, say, warn};
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
 pub(super) const MAX_THREADS: u32 = 1024;
@@ -50,13 +52,17 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
     let one = |e: Diagnostic| vec![e];
     let (scene, run) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
+    picture::check(args, &scene).map_err(one)?;
     let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons.map(|p| p.value));
     let plan = plan(args, &run, asked).map_err(one)?;
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
     make_directory(&args.output).map_err(one)?;
     say_rounding(asked, &plan);
     catch_interrupts();
-    let outcome = traced(args, &scene, &plan).map_err(one)?;
+    if let Some(map) = &args.map {
+        return seen_again(args, map, &scene, &plan);
+    }
+    let (outcome, picture) = traced(args, &scene, &plan).map_err(one)?;
     let directory = destination(&args.output, &outcome).map_err(one)?;
     let statistics: Vec<_> = scene
         .receivers
@@ -73,11 +79,19 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
             Vec::new()
         }));
     }
+    let mut camera = None;
+    if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
+        let written = picture::write(&directory, spec, picture);
+        camera = written.map_err(|e| unwritten.push(e)).ok();
+        unwritten.extend(save_photons(args, &outcome, picture).err());
+    }
     let total_s = started.elapsed().as_secs_f64();
-    let report = Report::new(&scene, &outcome, &statistics, &files, total_s);
+    let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
+    report.camera = camera;
     unwritten.extend(write_report(&directory.join("report.json"), &report).err());
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
+        print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
         print(&format!("written to {}\n", directory.display()));
     }
     if !unwritten.is_empty() {
@@ -127,11 +141,57 @@ fn say_rounding(asked: Option<u64>, plan: &Plan) {
     }
 }
 
-fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Outcome> {
+/// The photons of a whole run; part of one would not be what the settings say.
+fn save_photons(args: &RenderArgs, outcome: &Outcome, picture: &AnyPicture) -> Result<()> {
+    match &args.save_map {
+        Some(path) if outcome.stopped_by == StoppedBy::Photons => picture::save(path, picture),
+        Some(_) => {
+            say("caustix: interrupted, so the photons are not saved");
+            Ok(())
+        }
+        None => Ok(()),
+    }
+}
+
+/// The camera's picture of saved photons, and nothing else.
+fn seen_again(
+    args: &RenderArgs,
+    map: &Path,
+    scene: &Scene,
+    plan: &Plan,
+) -> std::result::Result<u8, Vec<Diagnostic>> {
+    let one = |e: Diagnostic| vec![e];
+    let pool = thread_pool(args.threads).map_err(one)?;
+    let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
+    let picture = pool.install(|| picture::of_saved(map, scene, plan, watch)).map_err(one)?;
+    if let Some(spec) = &scene.camera {
+        let report = picture::write(&args.output, spec, &picture).map_err(one)?;
+        if !args.quiet {
+            print(&format!("scene      {}\n", scene.identity.name));
+            print(&format!(
+                "photons    those saved in {}; none were traced, so receivers have no maps\n",
+                map.display()
+            ));
+            print(&report.text());
+            print(&format!("written to {}\n", args.output.display()));
+        }
+    }
+    Ok(exit::DONE)
+}
+
+fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<(Outcome, Option<AnyPicture>)> {
     let pool = thread_pool(args.threads)?;
     let progress = Progress::new(args.quiet, plan.photons());
     progress.say("tracing");
-    let outcome = pool.install(|| trace(scene, plan, &INTERRUPTED, &|photons| progress.add(photons)));
+    let photons = |photons| progress.add(photons);
+    let outcome = pool.install(|| {
+        if scene.camera.is_none() {
+            return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
+        }
+        let watch = Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|_| progress.say("camera") };
+        let (outcome, picture) = trace_picture(scene, plan, args.save_map.is_some(), watch)?;
+        Ok((outcome, Some(picture)))
+    });
     progress.finish();
     outcome
 }

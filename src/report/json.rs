@@ -8,6 +8,7 @@ use crate::run::{Outcome, StoppedBy};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
 
+use super::camera::CameraReport;
 use super::statistics::ReceiverStatistics;
 
 /// Everything report.json says. Names are a contract: they are only added to.
@@ -49,6 +50,9 @@ pub struct Report {
     pub exceptions: ExceptionsReport,
     /// Receivers in the order of the scene.
     pub receivers: Vec<ReceiverReport>,
+    /// The camera, where the scene has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraReport>,
     /// "photons" or "interrupt".
     pub stopped_by: &'static str,
     /// Warnings about the scene and its files.
@@ -263,6 +267,7 @@ impl Report {
                     files: files.clone(),
                 })
                 .collect(),
+            camera: None,
             stopped_by: match outcome.stopped_by {
                 StoppedBy::Photons => "photons",
                 StoppedBy::Interrupt => "interrupt",

@@ -3,6 +3,7 @@
 pub mod attributes;
 pub mod bsdf;
 pub mod bsdf_plot;
+pub mod camera;
 pub mod candela;
 pub mod compare;
 pub mod json;

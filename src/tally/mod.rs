@@ -7,8 +7,8 @@
 pub mod counts;
 pub mod photon_map;
 pub mod receiver;
-pub mod splat;
 pub mod weighted;
+pub mod wide_sum;
 
 pub use counts::{Counts, Moments};
 pub use receiver::{FixedPointSink, ReceiverSink, Receivers};

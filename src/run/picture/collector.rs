@@ -5,6 +5,7 @@
 //! is full before the range ends: receivers have counted it, its photons are dropped, and it is traced again in halves for
 //! the camera alone.
 
+use std::ops::Range;
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
@@ -12,14 +13,14 @@ use crate::scene::Scene;
 use crate::scene::camera::CameraSpec;
 use crate::tally::Receivers;
 use crate::tally::photon_map::sink::Kept;
-use crate::tally::photon_map::{Channels, Photon, PhotonStore};
+use crate::tally::photon_map::{Channels, Photon, PhotonStore, SavedMap};
 use crate::transport::parallel::Traced;
 
 use super::super::plan::Plan;
 use super::super::tracer::Tracer;
-use super::eye::{Bandwidths, Eye};
+use super::eye::{Bandwidths, Eye, Seen};
 use super::summary::{Cost, PictureSummary};
-use super::{KeptPhotons, Picture, Watch};
+use super::{Picture, Watch};
 
 /// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
 const fn bytes_of_photon<const C: usize>() -> u64 {
@@ -34,6 +35,7 @@ fn with_reserve(photons: f64) -> f64 {
 /// Photons on their way into a picture.
 pub(super) struct Collector<'a, const C: usize> {
     scene: &'a Scene,
+    plan: Plan,
     watch: Watch<'a>,
     eye: Eye<'a, C>,
     store: PhotonStore<C>,
@@ -44,13 +46,18 @@ pub(super) struct Collector<'a, const C: usize> {
     /// Photons traced, of which some were kept.
     traced: u64,
     kept: u64,
-    /// Replicates of the photons in the camera's sums and in `held`.
+    /// Replicates of `held`: whole ones, or a part of one.
+    held_of: Range<u32>,
+    /// Whether the last of them is whole.
+    whole: bool,
+    /// Replicates of all that was accepted.
     replicates: u32,
-    /// Flux of a photon in the camera's sums so far, lm: that of a whole run, set with the first pass.
-    photon_lm: Option<f64>,
+    /// Photons of the run as planned.
     planned: u64,
     bandwidths: Option<Bandwidths>,
     passes: u32,
+    /// Whether the last pass was of a part of a replicate that is to go on.
+    open: bool,
     keep: bool,
     camera_s: f64,
 }
@@ -70,19 +77,22 @@ impl<'a, const C: usize> Collector<'a, C> {
         let capacity = usize::try_from(spec.photon_memory_bytes / bytes_of_photon::<C>());
         Ok(Self {
             scene,
+            plan: *plan,
             watch,
-            eye: Eye::new(scene, spec, plan.seed, plan.replicates, watch)?,
+            eye: Eye::new(scene, spec, plan, watch)?,
             store: PhotonStore::new(scene),
             capacity: capacity.unwrap_or(usize::MAX).max(1),
             held: Kept::default(),
             held_photons: 0,
             traced: 0,
             kept: 0,
+            held_of: 0..0,
+            whole: true,
             replicates: 0,
-            photon_lm: None,
             planned: plan.photons(),
             bandwidths: None,
             passes: 0,
+            open: false,
             keep,
             camera_s: 0.0,
         })
@@ -100,21 +110,37 @@ impl<'a, const C: usize> Collector<'a, C> {
         carried: T,
     ) -> Result<Traced> {
         let mut all = Traced::new(self.scene);
+        let (n, from) = (self.plan.photons_per_replicate, tracer.photons());
+        // A pass is of whole replicates or of a part of one: the camera's error comes from whole ones.
+        if tracer.replicate() > 0 && from == 0 && self.foretold(n) > self.room() {
+            self.pass_unless_empty()?;
+        }
         while tracer.photons() < end && all.complete {
             let to = self.next_end(tracer.photons(), end);
-            if self.held_photons > 0 && self.foretold(to - tracer.photons()) > self.room() {
-                self.pass(false)?;
+            if self.foretold(to - tracer.photons()) > self.room() {
+                self.pass_unless_empty()?;
             }
             let before = *tracer;
-            let (traced, kept) = self.range(tracer, to, self.room(), receivers, carried)?;
+            let most = self.room();
+            let (traced, kept) = self.range(tracer, to, most, receivers, carried)?;
             all.merge(&traced);
             match kept {
                 _ if !traced.complete => {}
-                Some(kept) => self.accept(kept, before.replicate(), to - before.photons()),
+                Some(kept) => self.accept(kept, &before, to),
                 None => self.again(before, to, carried)?,
             }
         }
+        if all.complete && end == n && self.open {
+            self.pass(false)?;
+        }
         Ok(all)
+    }
+
+    fn pass_unless_empty(&mut self) -> Result<()> {
+        if self.held_of.is_empty() {
+            return Ok(());
+        }
+        self.pass(false).map(|_| ())
     }
 
     /// Where the next range ends: at `end`, or where as many photons as there is memory for are to be expected.
@@ -157,13 +183,20 @@ impl<'a, const C: usize> Collector<'a, C> {
         Ok((traced, self.store.take()))
     }
 
-    fn accept(&mut self, kept: Kept<C>, replicate: u32, traced: u64) {
+    /// Takes the photons of a range from `before` to photon number `to` for good.
+    fn accept(&mut self, kept: Kept<C>, before: &Tracer<'_>, to: u64) {
+        let replicate = before.replicate();
         for (held, kept) in self.held.iter_mut().zip(kept) {
             self.held_photons += kept.iter().map(Vec::len).sum::<usize>();
             self.kept += kept.iter().map(|block| block.len() as u64).sum::<u64>();
             held.extend(kept);
         }
-        self.traced += traced;
+        self.traced += to - before.photons();
+        if self.held_of.is_empty() {
+            self.held_of.start = replicate;
+        }
+        self.held_of.end = replicate + 1;
+        self.whole = to == self.plan.photons_per_replicate;
         self.replicates = self.replicates.max(replicate + 1);
     }
 
@@ -171,9 +204,7 @@ impl<'a, const C: usize> Collector<'a, C> {
     /// what others left, else in halves.
     fn again<T: Channels<C>>(&mut self, before: Tracer<'_>, to: u64, carried: T) -> Result<()> {
         let had_all_room = self.held_photons == 0;
-        if !had_all_room {
-            self.pass(false)?;
-        }
+        self.pass_unless_empty()?;
         let nobody = Receivers::new(&self.scene.geometry, &[]);
         let silent = Watch { photons: &|_| {}, ..self.watch };
         let watch = std::mem::replace(&mut self.watch, silent);
@@ -192,7 +223,7 @@ impl<'a, const C: usize> Collector<'a, C> {
                 Err(e) => Err(e),
                 Ok((traced, _)) if !traced.complete => break,
                 Ok((_, Some(kept))) => {
-                    self.accept(kept, from.replicate(), part - from.photons());
+                    self.accept(kept, &from, part);
                     Ok(())
                 }
                 Ok((_, None)) => self.again(from, part, carried),
@@ -203,18 +234,19 @@ impl<'a, const C: usize> Collector<'a, C> {
     }
 
     /// Takes the photons of another run of the scene for its own.
-    pub(super) fn adopt(&mut self, kept: KeptPhotons<C>) {
-        self.planned = kept.traced;
-        self.replicates = kept.replicates;
-        self.traced = kept.traced;
-        self.kept = kept.photons.len() as u64;
-        self.held_photons = kept.photons.len();
-        let (scattered, not): (Vec<_>, Vec<_>) = kept.photons.into_iter().partition(Photon::is_scattered);
+    pub(super) fn adopt(&mut self, saved: SavedMap<C>) {
+        self.planned = saved.photons_traced;
+        self.replicates = saved.replicates;
+        (self.held_of, self.whole) = (0..saved.replicates, true);
+        self.traced = saved.photons_traced;
+        self.kept = saved.photons.len() as u64;
+        self.held_photons = saved.photons.len();
+        let (scattered, not): (Vec<_>, Vec<_>) = saved.photons.into_iter().partition(Photon::is_scattered);
         self.held = [vec![not], vec![scattered]];
     }
 
-    /// Shows the camera what is held. In a run of one pass a photon's flux is known exactly by then; before, it is that of
-    /// the run as planned, and the sums are corrected at the end.
+    /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that of the run as
+    /// planned. Light that no photon brings is seen in the last pass.
     fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
         if self.keep && !last {
             return Err(Diagnostic::new(
@@ -226,24 +258,33 @@ impl<'a, const C: usize> Collector<'a, C> {
         }
         let started = Instant::now();
         let flux_lm = self.scene.emitters.flux_lm();
-        let standing_for = if last { self.traced } else { self.planned };
-        let photon_lm = *self.photon_lm.get_or_insert(flux_lm / standing_for.max(1) as f64);
+        let exact_lm = flux_lm / self.traced.max(1) as f64;
+        let planned_lm = flux_lm / self.planned.max(1) as f64;
+        let photon_lm = if last { exact_lm } else { planned_lm };
+        if last && self.passes > 0 && exact_lm != planned_lm {
+            // An interrupted run: earlier passes took a photon for less than it turned out to be.
+            self.eye.scale(exact_lm / planned_lm);
+        }
         let in_pass = std::mem::take(&mut self.held_photons) as f64;
-        let held = std::mem::take(&mut self.held);
-        let frame = self.store.frame();
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
         let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
-        let part = part * self.traced as f64 / standing_for.max(1) as f64;
-        let mut maps = self.eye.maps(held.map(joined), frame, self.bandwidths.as_ref());
-        let bandwidths = match self.bandwidths {
-            Some(bandwidths) => bandwidths,
+        let part = part * photon_lm / exact_lm;
+        let frame = self.store.frame();
+        let photons = std::mem::take(&mut self.held).map(joined);
+        let mut maps = self.eye.maps(photons, frame, self.bandwidths.as_ref());
+        let bandwidths = match &self.bandwidths {
+            Some(bandwidths) => *bandwidths,
             None => {
-                let bandwidths = *self.bandwidths.insert(Bandwidths::choose(&self.eye, &maps, part));
+                let bandwidths = self.eye.choose(&maps, part);
                 maps = bandwidths.sorted(maps);
-                bandwidths
+                *self.bandwidths.insert(bandwidths)
             }
         };
-        self.eye.add(&maps, photon_lm, &bandwidths, last && self.passes == 0)?;
+        let of = std::mem::replace(&mut self.held_of, 0..0);
+        let of = if of.is_empty() && self.open { self.replicates - 1..self.replicates } else { of };
+        self.eye.add(&Seen { maps: &maps, photon_lm, bandwidths, replicates: of, last })?;
+        // What an interrupt left of a replicate closes it.
+        self.open = !(self.whole || last);
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
         let [caustic, diffuse] = &maps;
@@ -255,17 +296,18 @@ impl<'a, const C: usize> Collector<'a, C> {
     /// # Errors
     /// Those of a pass.
     pub(super) fn finish(mut self) -> Result<Picture<C>> {
-        let kept = if self.passes == 0 || self.held_photons > 0 { self.pass(true)? } else { None };
-        let photon_lm = self.scene.emitters.flux_lm() / self.traced.max(1) as f64;
-        let scale = self.photon_lm.map_or(1.0, |used| photon_lm / used);
-        let photons = kept.map(|photons| KeptPhotons {
+        let kept = self.pass(true)?;
+        let photons = kept.map(|photons| SavedMap {
+            scene_hash: super::hash_of_photons(self.scene, &self.plan),
+            settings: super::settings_of(&self.plan),
+            photons_traced: self.traced,
+            replicates: self.replicates,
+            photon_lm: self.scene.emitters.flux_lm() / self.traced.max(1) as f64,
             frame: self.store.frame(),
             photons,
-            traced: self.traced,
-            replicates: self.replicates,
         });
         let chosen = self.bandwidths.map(|b| b.chosen());
-        let (film, killed) = self.eye.finish(scale, self.replicates)?;
+        let (film, killed) = self.eye.finish(self.replicates);
         let cost = Cost::of(&film);
         let summary = PictureSummary {
             method: crate::scene::camera::Method::Map,

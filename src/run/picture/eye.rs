@@ -4,11 +4,10 @@
 //! in the order of the replicates and may end in the middle of one, so its partial sum stays open until photons of a later
 //! one are seen.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
-
-use rayon::prelude::*;
 
 use crate::camera::film::Sums;
 use crate::camera::render::{Pass, render};
@@ -21,6 +20,7 @@ use crate::scene::Scene;
 use crate::scene::camera::{Bandwidth, CameraSpec};
 use crate::tally::photon_map::{Frame, Photon, PhotonMap};
 
+use super::super::plan::Plan;
 use super::Watch;
 use super::summary::Chosen;
 
@@ -32,25 +32,6 @@ pub(super) struct Bandwidths {
 }
 
 impl Bandwidths {
-    /// From the photons of the first pass, `part` of all.
-    pub(super) fn choose<const C: usize>(eye: &Eye<'_, C>, maps: &[PhotonMap<C>; 2], part: f64) -> Self {
-        let pairs = [0, 1].map(|k| match eye.view.spec().bandwidth {
-            Bandwidth::Automatic => {
-                let kernel = eye.view.spec().kernel;
-                let found = bandwidth::choose(&eye.footprints, &maps[k], kernel, eye.replicates, part);
-                let neighbours = Some(found.mean_neighbours).filter(|n| n.is_finite());
-                (Bandwidth::Radius(found.radius_m), Chosen { radius_m: Some(found.radius_m), neighbours })
-            }
-            asked @ (Bandwidth::Radius(radius) | Bandwidth::Progressive(radius)) => {
-                (asked, Chosen { radius_m: Some(radius), neighbours: None })
-            }
-            asked @ Bandwidth::Nearest(k) => {
-                (asked, Chosen { radius_m: None, neighbours: Some(f64::from(k)) })
-            }
-        });
-        Self { of: pairs.map(|p| p.0), chosen: pairs.map(|p| p.1) }
-    }
-
     pub(super) fn chosen(&self) -> [Chosen; 2] {
         self.chosen
     }
@@ -73,6 +54,19 @@ impl Bandwidths {
     }
 }
 
+/// What the camera sees in a pass.
+pub(super) struct Seen<'m, const C: usize> {
+    /// Photons that were not scattered before, and those that were.
+    pub(super) maps: &'m [PhotonMap<C>; 2],
+    /// Flux of one of them, lm: that of the whole run.
+    pub(super) photon_lm: f64,
+    pub(super) bandwidths: Bandwidths,
+    /// The replicates they are of; the first may have had photons in the pass before.
+    pub(super) replicates: Range<u32>,
+    /// Whether it is the last pass, in which light that no photon brings is seen as well.
+    pub(super) last: bool,
+}
+
 /// The camera at work.
 pub(super) struct Eye<'a, const C: usize> {
     view: View<'a>,
@@ -80,28 +74,36 @@ pub(super) struct Eye<'a, const C: usize> {
     watch: Watch<'a>,
     replicates: u32,
     sums: Sums<C>,
-    /// Whether direct light, emitters and the background are in.
-    lit: bool,
     killed: u64,
 }
 
 impl<'a, const C: usize> Eye<'a, C> {
-    pub(super) fn new(
-        scene: &'a Scene,
-        spec: &'a CameraSpec,
-        seed: u64,
-        replicates: u32,
-        watch: Watch<'a>,
-    ) -> Result<Self> {
+    pub(super) fn new(scene: &'a Scene, spec: &'a CameraSpec, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
         Ok(Self {
-            view: View::new(scene, spec, seed)?,
+            view: View::new(scene, spec, plan.seed)?,
             footprints: Arc::new(Footprints::new(&scene.geometry)),
             watch,
-            replicates,
+            replicates: plan.replicates,
             sums: Sums::new(spec.pixels)?,
-            lit: false,
             killed: 0,
         })
+    }
+
+    /// The bandwidths of a run, from the photons of its first pass: `part` of all.
+    pub(super) fn choose(&self, maps: &[PhotonMap<C>; 2], part: f64) -> Bandwidths {
+        let CameraSpec { bandwidth, kernel, .. } = *self.view.spec();
+        let pairs = [0, 1].map(|k| match bandwidth {
+            Bandwidth::Automatic => {
+                let found = bandwidth::choose(&self.footprints, &maps[k], kernel, self.replicates, part);
+                let neighbours = Some(found.mean_neighbours).filter(|n| n.is_finite());
+                (Bandwidth::Radius(found.radius_m), Chosen { radius_m: Some(found.radius_m), neighbours })
+            }
+            Bandwidth::Radius(radius) | Bandwidth::Progressive(radius) => {
+                (bandwidth, Chosen { radius_m: Some(radius), neighbours: None })
+            }
+            Bandwidth::Nearest(k) => (bandwidth, Chosen { radius_m: None, neighbours: Some(f64::from(k)) }),
+        });
+        Bandwidths { of: pairs.map(|p| p.0), chosen: pairs.map(|p| p.1) }
     }
 
     /// Maps of photons of either kind, sorted for the bandwidths if these are known.
@@ -120,34 +122,27 @@ impl<'a, const C: usize> Eye<'a, C> {
         })
     }
 
-    /// Adds what is seen of these photons. Where they are all there are (`is_whole`) what needs no photons is seen on the way.
-    pub(super) fn add(
-        &mut self,
-        maps: &[PhotonMap<C>; 2],
-        photon_lm: f64,
-        bandwidths: &Bandwidths,
-        is_whole: bool,
-    ) -> Result<()> {
+    /// Adds what is seen of a pass's photons.
+    pub(super) fn add(&mut self, seen: &Seen<'_, C>) -> Result<()> {
         let densities = [0, 1].map(|k| {
             let choice = Choice {
-                bandwidth: bandwidths.of[k],
+                bandwidth: seen.bandwidths.of[k],
                 kernel: self.view.spec().kernel,
                 replicates: self.replicates,
             };
-            Density::on(Arc::clone(&self.footprints), &maps[k], photon_lm, choice)
+            Density::on(Arc::clone(&self.footprints), &seen.maps[k], seen.photon_lm, choice)
         });
-        let replicates = replicates_of(maps);
-        if is_whole {
-            self.lit = true;
-            self.render(&Pass::whole(&densities, replicates.end))
-        } else {
-            self.render(&Pass::photons(&densities, replicates))
-        }
+        let replicates = seen.replicates.clone();
+        self.render(&Pass { densities: &densities, replicates, emission: seen.last, direct: seen.last })
+    }
+
+    /// A photon turned out to carry another flux than passes so far took it for.
+    pub(super) fn scale(&mut self, factor: f64) {
+        self.sums.scale(factor);
     }
 
     /// Adds emitters and background as seen directly, by mirrors and through glass, without light on surfaces.
     pub(super) fn add_emitters(&mut self) -> Result<()> {
-        self.lit = true;
         self.render(&Pass::emission())
     }
 
@@ -170,29 +165,8 @@ impl<'a, const C: usize> Eye<'a, C> {
         Ok(())
     }
 
-    /// The film; light of photons is scaled to what they turned out to stand for.
-    ///
-    /// # Errors
-    /// Interrupted.
-    pub(super) fn finish(mut self, scale: f64, replicates: u32) -> Result<(Film<C>, u64)> {
-        if !self.lit {
-            self.sums.scale(scale);
-            self.render(&Pass::without_photons())?;
-        }
-        Ok((self.sums.finish(replicates), self.killed))
+    /// The film of photons of so many replicates, and the number of eye paths that did not end by themselves.
+    pub(super) fn finish(self, replicates: u32) -> (Film<C>, u64) {
+        (self.sums.finish(replicates), self.killed)
     }
-}
-
-/// From the first replicate to the last of which there are photons.
-fn replicates_of<const C: usize>(maps: &[PhotonMap<C>; 2]) -> std::ops::Range<u32> {
-    let of = |map: &PhotonMap<C>| {
-        let none = || (u32::MAX, 0);
-        let joined = |a: (u32, u32), b: (u32, u32)| (a.0.min(b.0), a.1.max(b.1));
-        map.photons()
-            .par_iter()
-            .map(|photon| (photon.replicate() as u32, photon.replicate() as u32 + 1))
-            .reduce(none, joined)
-    };
-    let [(a, b), (c, d)] = [of(&maps[0]), of(&maps[1])];
-    a.min(c).min(b.max(d))..b.max(d)
 }

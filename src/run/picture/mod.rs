@@ -20,7 +20,9 @@ use crate::camera::Film;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
-use crate::tally::photon_map::{Channels, Frame, Photon};
+use crate::scene::source::sha256_hex;
+use crate::scene::without_camera::without_camera;
+use crate::tally::photon_map::{Channels, SavedMap};
 
 use super::{Outcome, Plan, trace_by};
 use collector::Collector;
@@ -34,7 +36,7 @@ pub struct Picture<const C: usize> {
     /// How it was made, and how good it is.
     pub summary: PictureSummary,
     /// The photons it was made of, in a fixed order, where they were asked for.
-    pub photons: Option<KeptPhotons<C>>,
+    pub photons: Option<SavedMap<C>>,
 }
 
 /// A picture in one channel or three.
@@ -56,19 +58,6 @@ impl AnyPicture {
     }
 }
 
-/// The photons of a run, for another view of the same light.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KeptPhotons<const C: usize> {
-    /// In which steps positions are.
-    pub frame: Frame,
-    /// Photons, in an order of their own.
-    pub photons: Vec<Photon<C>>,
-    /// Photons that were traced for them.
-    pub traced: u64,
-    /// Replicates they belong to.
-    pub replicates: u32,
-}
-
 /// What a run does beside tracing.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
@@ -78,6 +67,31 @@ pub struct Watch<'a> {
     pub photons: &'a (dyn Fn(u64) + Sync),
     /// Told the part of the camera's work that is done in a pass, 0 to 1.
     pub camera: &'a (dyn Fn(f64) + Sync),
+}
+
+/// What photons depend on: the scene but for its camera, the files it names, and the run's settings. Maps of other
+/// photons have another hash.
+pub fn hash_of_photons(scene: &Scene, plan: &Plan) -> String {
+    let mut all = format!("{}\n{}\n", env!("CARGO_PKG_VERSION"), settings_of(plan));
+    for (path, sha256) in &scene.identity.files {
+        all += &format!("{sha256} {path}\n");
+    }
+    all += &without_camera(&scene.identity.text);
+    sha256_hex(all.as_bytes())
+}
+
+/// The settings of a run in words.
+fn settings_of(plan: &Plan) -> String {
+    let algorithm = plan.algorithm;
+    let way = if algorithm.variant.rejects() { algorithm.rejection.name() } else { algorithm.solver.name() };
+    format!(
+        "{} {way} {} seed {} {} x {} photons",
+        algorithm.variant.name(),
+        algorithm.sequence.name(),
+        plan.seed,
+        plan.replicates,
+        plan.photons_per_replicate
+    )
 }
 
 /// The camera of a scene, for those who know that it has one.
@@ -152,14 +166,14 @@ fn with_channels<const C: usize, T: Channels<C>>(
     }
 }
 
-/// The picture of photons that were kept by another run of the same scene.
+/// The picture of photons that another run of the same scene saved.
 ///
 /// # Errors
 /// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have.
-pub fn picture_of_kept<const C: usize>(
+pub fn picture_of_saved<const C: usize>(
     scene: &Scene,
     plan: &Plan,
-    kept: KeptPhotons<C>,
+    saved: SavedMap<C>,
     watch: Watch<'_>,
 ) -> Result<Picture<C>> {
     let spec = camera_of(scene)?;
@@ -172,7 +186,7 @@ pub fn picture_of_kept<const C: usize>(
         ));
     }
     let primitives = scene.geometry.primitive_count() as u64;
-    if kept.photons.iter().any(|p| u64::from(p.primitive) >= primitives) {
+    if saved.photons.iter().any(|p| u64::from(p.primitive) >= primitives) {
         return Err(Diagnostic::new(
             Kind::Range,
             "photons on surfaces that this scene does not have",
@@ -181,7 +195,7 @@ pub fn picture_of_kept<const C: usize>(
     }
     let started = Instant::now();
     let mut collector = Collector::new(scene, spec, plan, false, watch)?;
-    collector.adopt(kept);
+    collector.adopt(saved);
     let mut picture = collector.finish()?;
     picture.summary.from_file = true;
     picture.summary.time_s = started.elapsed().as_secs_f64();

@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use crate::camera::Film;
+use crate::camera::splat::{Splat, SplatMoments};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
 use crate::tally::photon_map::Channels;
-use crate::tally::splat::{Splat, SplatMoments};
 
 use super::super::{Outcome, Plan, trace_by};
 use super::eye::Eye;
@@ -22,7 +22,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     watch: Watch<'_>,
     carried: T,
 ) -> Result<(Outcome, Picture<C>)> {
-    let mut eye = Eye::<C>::new(scene, spec, plan.seed, plan.replicates, watch)?;
+    let mut eye = Eye::<C>::new(scene, spec, plan, watch)?;
     let mut splat = Splat::<C>::new(scene, spec)?;
     let mut moments = SplatMoments::<C>::new(spec.pixels[0] as usize * spec.pixels[1] as usize);
     let mut joined = 0;
@@ -46,7 +46,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     )?;
     let started = Instant::now();
     eye.add_emitters()?;
-    let (film, killed) = eye.finish(1.0, 0)?;
+    let (film, killed) = eye.finish(0);
     let film = with_splats(film, &moments, &outcome);
     let cost = Cost::of(&film);
     let summary = PictureSummary {

@@ -1,0 +1,108 @@
+//! The camera of `caustix render`: its files, and photons saved for another view of the same light.
+
+use std::path::Path;
+
+use crate::camera::Film;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::image::atomic::write_atomically;
+use crate::image::exr::{Channel, Data, Value, write_maps};
+use crate::report::camera::CameraReport;
+use crate::run::Plan;
+use crate::run::picture::{self, AnyPicture, Watch, hash_of_photons, picture_of_saved};
+use crate::scene::Scene;
+use crate::scene::camera::CameraSpec;
+use crate::scene::source::read_capped;
+use crate::tally::photon_map::SavedMap;
+use crate::tally::photon_map::file::channels;
+
+use super::RenderArgs;
+
+/// Largest photon map that is read: 64 GiB.
+const MOST_MAP_BYTES: u64 = 64 << 30;
+
+/// What is asked of the camera, checked before anything is traced.
+///
+/// # Errors
+/// Options that need a camera where there is none; a camera that cannot be.
+pub(super) fn check(args: &RenderArgs, scene: &Scene) -> Result<()> {
+    let Some(spec) = &scene.camera else {
+        let option = match (&args.map, &args.save_map) {
+            (None, None) => return Ok(()),
+            (Some(_), _) => "--map",
+            (None, Some(_)) => "--save-map",
+        };
+        return Err(Diagnostic::new(
+            Kind::Missing,
+            format!("{option} and a scene without [camera]"),
+            "a scene with a camera: photons are kept for it alone",
+        ));
+    };
+    let splat = spec.method == crate::scene::camera::Method::Splat;
+    if splat && args.save_map.is_some() {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            "--save-map and method \"splat\"",
+            "method = \"map\": splatting keeps no photons",
+        ));
+    }
+    picture::check(spec)
+}
+
+/// The picture of saved photons.
+///
+/// # Errors
+/// A file that cannot be read, is damaged, or holds other photons than this scene and these settings give.
+pub(super) fn of_saved(path: &Path, scene: &Scene, plan: &Plan, watch: Watch<'_>) -> Result<AnyPicture> {
+    let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
+    let hash = hash_of_photons(scene, plan);
+    let in_file = |e: Diagnostic| e.in_file(path);
+    // A file of the other number of channels is of another scene: its hash says so.
+    Ok(if scene.is_coloured() && channels(&bytes).map_err(in_file)? == 3 {
+        let saved = SavedMap::<3>::from_bytes(&bytes, &hash).map_err(in_file)?;
+        drop(bytes);
+        AnyPicture::Rgb(picture_of_saved(scene, plan, saved, watch).map_err(in_file)?)
+    } else {
+        let saved = SavedMap::<1>::from_bytes(&bytes, &hash).map_err(in_file)?;
+        drop(bytes);
+        AnyPicture::Grey(picture_of_saved(scene, plan, saved, watch).map_err(in_file)?)
+    })
+}
+
+/// Writes the photons of a picture.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(super) fn save(path: &Path, picture: &AnyPicture) -> Result<()> {
+    write_atomically(path, |out| match picture {
+        AnyPicture::Grey(picture) => picture.photons.as_ref().map_or(Ok(()), |map| map.to_writer(out)),
+        AnyPicture::Rgb(picture) => picture.photons.as_ref().map_or(Ok(()), |map| map.to_writer(out)),
+    })
+}
+
+/// Writes the camera's files into a directory that exists, and says what they are.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(super) fn write(directory: &Path, spec: &CameraSpec, picture: &AnyPicture) -> Result<CameraReport> {
+    let files = match picture {
+        AnyPicture::Grey(picture) => write_film(directory, &picture.film)?,
+        AnyPicture::Rgb(picture) => write_film(directory, &picture.film)?,
+    };
+    Ok(CameraReport::new(spec, picture.summary(), &files))
+}
+
+fn write_film<const C: usize>(directory: &Path, film: &Film<C>) -> Result<Vec<String>> {
+    let floats = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v as f32).collect::<Vec<f32>>();
+    let colours: Vec<Vec<f32>> = (0..C).map(|c| floats(&mut film.value.iter().map(|v| v[c]))).collect();
+    let names: &[&str] = if C == 1 { &["Y"] } else { &["R", "G", "B"] };
+    let error = floats(&mut film.standard_error.iter().copied());
+    let bias = floats(&mut film.bias.iter().copied());
+    let mut all: Vec<Channel<'_>> =
+        names.iter().zip(&colours).map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
+    all.push(Channel { name: "standard_error", data: Data::F32(&error) });
+    all.push(Channel { name: "bias", data: Data::F32(&bias) });
+    let [width, height] = film.pixels.map(|n| n as usize);
+    let unit = [("caustix.unit".to_string(), Value::Text("cd/m2".to_string()))];
+    write_maps(directory.join("camera.exr"), width, height, &all, &unit)?;
+    Ok(vec!["camera.exr".to_string()])
+}

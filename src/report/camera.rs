@@ -1,0 +1,190 @@
+//! What is said of a camera: how light got into its pixels, what was chosen, what it costs.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use crate::run::picture::{Chosen, PictureSummary};
+use crate::scene::camera::{CameraSpec, Method};
+
+use super::text::{grouped, rounded};
+
+/// The camera of report.json. Names are a contract: they are only added to.
+#[derive(Debug, Clone, Serialize)]
+pub struct CameraReport {
+    /// Columns and rows.
+    pub pixels: [u32; 2],
+    /// Eye paths a pixel.
+    pub samples: u32,
+    /// "map" or "splat".
+    pub method: &'static str,
+    /// Of the densities of a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bandwidth: Option<BandwidthReport>,
+    /// Median over lit pixels of the estimated bias, percent of the pixel.
+    pub median_bias_percent: Option<f64>,
+    /// The same of the standard error.
+    pub median_standard_error_percent: Option<f64>,
+    /// Photons that the picture stands for.
+    pub photons: u64,
+    /// Photons kept on surfaces; of a splat: arrivals that reached a pixel.
+    pub photons_kept: u64,
+    /// Passes that the memory for photons made necessary.
+    pub passes: u32,
+    /// Time of maps and eye paths, s. (What a splat takes is part of the tracing.)
+    pub time_s: f64,
+    /// Files written.
+    pub files: Vec<String>,
+}
+
+/// Bandwidths by density.
+#[derive(Debug, Clone, Serialize)]
+pub struct BandwidthReport {
+    /// Of light that no surface scattered before it arrived.
+    pub caustic: DensityReport,
+    /// Of light that was scattered before.
+    pub diffuse: DensityReport,
+}
+
+/// One bandwidth.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct DensityReport {
+    /// Radius, m.
+    pub radius_m: Option<f64>,
+    /// Mean number of photons within it.
+    pub neighbours: Option<f64>,
+}
+
+impl From<Chosen> for DensityReport {
+    fn from(chosen: Chosen) -> Self {
+        Self { radius_m: chosen.radius_m, neighbours: chosen.neighbours }
+    }
+}
+
+/// The word of the scene file for a method.
+fn word(method: Method) -> &'static str {
+    match method {
+        Method::Map => "map",
+        Method::Splat => "splat",
+    }
+}
+
+impl CameraReport {
+    /// Of a picture and its files.
+    pub fn new(spec: &CameraSpec, summary: &PictureSummary, files: &[String]) -> Self {
+        Self {
+            pixels: spec.pixels,
+            samples: spec.samples,
+            method: word(summary.method),
+            bandwidth: summary.bandwidth.map(|[caustic, diffuse]| BandwidthReport {
+                caustic: caustic.into(),
+                diffuse: diffuse.into(),
+            }),
+            median_bias_percent: summary.cost.median_bias_percent,
+            median_standard_error_percent: summary.cost.median_standard_error_percent,
+            photons: summary.photons,
+            photons_kept: summary.photons_kept,
+            passes: summary.passes,
+            time_s: summary.time_s,
+            files: files.to_vec(),
+        }
+    }
+
+    /// The same in words, for the printed summary.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        // Writing to a String cannot fail.
+        let _infallible = self.write(&mut out);
+        out
+    }
+
+    fn write(&self, out: &mut String) -> std::fmt::Result {
+        let [columns, rows] = self.pixels;
+        writeln!(
+            out,
+            "\ncamera: {columns} x {rows} pixels, {} samples each, method {}",
+            self.samples, self.method
+        )?;
+        let (kept, of) = (grouped(self.photons_kept), grouped(self.photons));
+        match &self.bandwidth {
+            Some(bandwidth) => {
+                let passes = if self.passes == 1 { "pass" } else { "passes" };
+                writeln!(
+                    out,
+                    "  photons      {kept} arrivals kept, of {of} photons, in {} {passes}",
+                    self.passes
+                )?;
+                let (caustic, diffuse) = (described(&bandwidth.caustic), described(&bandwidth.diffuse));
+                writeln!(out, "  bandwidth    caustics {caustic}; light scattered before {diffuse}")?;
+            }
+            None => {
+                writeln!(out, "  photons      {kept} arrivals joined to the pinhole, of {of} photons")?;
+                writeln!(out, "  missing      what is scattered last and seen by mirror or through glass")?;
+            }
+        }
+        let percent = |p: Option<f64>| p.map_or("unknown".to_string(), |p| format!("{} %", rounded(p, 2)));
+        writeln!(
+            out,
+            "  error        standard error {}, bias {} of a pixel (medians)",
+            percent(self.median_standard_error_percent),
+            percent(self.median_bias_percent)
+        )?;
+        if !self.files.is_empty() {
+            writeln!(out, "  files        {}", self.files.join(", "))?;
+        }
+        writeln!(out, "  time         {:.2} s", self.time_s)
+    }
+}
+
+fn described(density: &DensityReport) -> String {
+    let radius = density.radius_m.map(|r| format!("{} m", rounded(r, 3)));
+    let neighbours = density.neighbours.map(|n| format!("{} photons", rounded(n, 3)));
+    match (radius, neighbours) {
+        (Some(radius), Some(neighbours)) => format!("{radius} ({neighbours})"),
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => "none".to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::picture::summary::Cost;
+    use glam::DVec3;
+
+    #[test]
+    fn what_was_chosen_and_what_it_cost_is_said() {
+        let spec = CameraSpec::pinhole(DVec3::Z, DVec3::ZERO, DVec3::Y, 40.0, [800, 600]);
+        let chosen = |r, n| Chosen { radius_m: Some(r), neighbours: n };
+        let mut summary = PictureSummary {
+            method: Method::Map,
+            photons: 4_000_000,
+            replicates: 8,
+            photons_kept: 1_234_567,
+            passes: 2,
+            bandwidth: Some([chosen(0.0125, Some(81.25)), chosen(0.1, None)]),
+            cost: Cost { median_bias_percent: Some(1.234), median_standard_error_percent: None },
+            time_s: 12.345,
+            from_file: false,
+        };
+        let report = CameraReport::new(&spec, &summary, &["camera.exr".into(), "camera.png".into()]);
+        for line in [
+            "camera: 800 x 600 pixels, 16 samples each, method map\n",
+            "1 234 567 arrivals kept, of 4 000 000 photons, in 2 passes\n",
+            "caustics 0.0125 m (81.2 photons); light scattered before 0.1 m\n",
+            "standard error unknown, bias 1.2 % of a pixel",
+            "files        camera.exr, camera.png\n",
+        ] {
+            assert!(report.text().contains(line), "{line}\n{}", report.text());
+        }
+        let json = serde_json::to_value(&report).unwrap();
+        assert_eq!(json["bandwidth"]["caustic"]["radius_m"], 0.0125);
+        assert_eq!(json["bandwidth"]["diffuse"]["neighbours"], serde_json::Value::Null);
+        (summary.method, summary.bandwidth) = (Method::Splat, None);
+        let splat = CameraReport::new(&spec, &summary, &[]).text();
+        assert!(
+            splat.contains("method splat") && splat.contains("seen by mirror or through glass"),
+            "{splat}"
+        );
+    }
+}
