@@ -75,7 +75,15 @@ fn faces_are_those_of_the_csv_and_their_flux_is_what_the_lamp_sends() {
     fs::write(&file, SCENE).unwrap();
     let output = folder.path().join("out");
     let status = Command::new(env!("CARGO_BIN_EXE_caustix"))
-        .args(["render", file.to_str().unwrap(), "-n", "2^14", "-o", output.to_str().unwrap(), "--quiet"])
+        .args([
+            "render",
+            file.to_str().unwrap(),
+            "--photons",
+            "2^14",
+            "-o",
+            output.to_str().unwrap(),
+            "--quiet",
+        ])
         .status()
         .unwrap();
     assert!(status.success());

@@ -164,3 +164,24 @@ fn a_scene_with_a_camera_requires_it_and_only_the_map_keeps_photons() {
     let scene = build(&read(REQUIRED).unwrap()).unwrap();
     assert_eq!(scene.camera, Some(spec(REQUIRED)));
 }
+
+#[test]
+fn check_tells_of_the_camera() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("s.toml");
+    let check = |text: &str, json: &[&str]| {
+        std::fs::write(&file, text).unwrap();
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_caustix"));
+        let output = command.arg("check").arg(&file).args(json).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let with = format!("{SCENE}[camera]\n{REQUIRED}");
+    let text = check(&with, &[]);
+    let line = "camera     320 x 200 pixels of 16 samples, map, at most 2147 MB of photons at a time\n";
+    assert!(text.contains(line), "{text}");
+    let json: serde_json::Value = serde_json::from_str(&check(&with, &["--json"])).unwrap();
+    assert_eq!(json["camera"]["pixels"], serde_json::json!([320, 200]));
+    let json: serde_json::Value = serde_json::from_str(&check(SCENE, &["--json"])).unwrap();
+    assert!(json.get("camera").is_none());
+}
