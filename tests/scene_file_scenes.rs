@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use caustix::bsdf::Reflectance;
 use caustix::error::Kind;
 use caustix::scene::description::{
-    BeamSection, Description, EmitterShape, Facing, MaterialKind, ReceiverEvents, ReceiverSide,
-    ReliefDescription, ShapeDescription, TransformDescription,
+    BeamSection, ColourDescription, Description, EmitterShape, Facing, MaterialKind, ReceiverEvents,
+    ReceiverSide, ReliefDescription, ShapeDescription, TransformDescription,
 };
 use caustix::scene::file::{parse, read};
 use caustix::scene::source::Base;
@@ -197,6 +197,8 @@ fn every_example_of_the_manual_reads() {
     let scene = parse(&parts, "manual", Base::BuiltIn).unwrap();
     assert_eq!((scene.emitters.len(), scene.surfaces.len(), scene.receivers.len()), (4, 8, 2));
     assert_eq!(scene.run.photons.unwrap().value, 1 << 24);
+    assert_eq!(scene.camera.unwrap().spec.samples, 32);
+    assert_eq!(scene.emitters[1].colour.unwrap().value, ColourDescription::Cct(2700.0));
 }
 
 #[test]

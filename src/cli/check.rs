@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
+use crate::report::picture::method_word;
+use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
 use super::{CheckArgs, exit, fail, print, render, warn};
@@ -15,6 +17,8 @@ struct Check {
     surfaces: Vec<SurfaceCheck>,
     emitters: Vec<EmitterCheck>,
     receivers: Vec<ReceiverCheck>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    camera: Option<CameraCheck>,
     memory_mb: f64,
     warnings: Vec<String>,
     errors: Vec<ErrorCheck>,
@@ -40,6 +44,14 @@ struct ReceiverCheck {
     name: String,
     cells: usize,
     area_m2: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct CameraCheck {
+    pixels: [u32; 2],
+    samples: u32,
+    method: &'static str,
+    photon_memory_mb: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -89,6 +101,16 @@ impl Check {
                     area_m2: r.total_area_m2(),
                 })
                 .collect(),
+            camera: scene.camera.as_ref().map(|c| CameraCheck {
+                pixels: c.pixels,
+                samples: c.samples,
+                method: method_word(c.method),
+                photon_memory_mb: if c.method == Method::Map {
+                    c.photon_memory_bytes as f64 / 1e6
+                } else {
+                    0.0
+                },
+            }),
             memory_mb: (scene.memory_bytes() + cells * per_cell) as f64 / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
@@ -109,6 +131,7 @@ impl Check {
             surfaces: Vec::new(),
             emitters: Vec::new(),
             receivers: Vec::new(),
+            camera: None,
             memory_mb: 0.0,
             warnings: Vec::new(),
             errors: errors.iter().map(place).collect(),
@@ -135,6 +158,17 @@ impl Check {
                 r.name,
                 r.cells,
                 crate::report::text::digits(r.area_m2)
+            );
+        }
+        if let Some(c) = &self.camera {
+            let [columns, rows] = c.pixels;
+            let photons = match c.photon_memory_mb {
+                0.0 => String::new(),
+                mb => format!(", at most {mb:.0} MB of photons at a time"),
+            };
+            out += &format!(
+                "camera     {columns} x {rows} pixels of {} samples, {}{photons}\n",
+                c.samples, c.method
             );
         }
         out + &format!("memory     {:.1} MB\n", self.memory_mb)

@@ -125,8 +125,10 @@ fn read_bandwidth(table: &mut Table<'_, '_>) -> Bandwidth {
     let nearest = table.integer("nearest", 2, MOST_NEAREST, words);
     let progressive = table.number("progressive_radius", &LENGTH);
     let mut given =
-        ["radius", "nearest", "progressive_radius"].into_iter().filter(|k| table.place_of(k).is_some());
-    if let (Some(_), Some(second)) = (given.next(), given.next()) {
+        ["radius", "nearest", "progressive_radius"].map(|key| (table.place_of(key), key)).to_vec();
+    given.retain(|(place, _)| place.is_some());
+    given.sort_unstable();
+    if let [_, (_, second), ..] = given[..] {
         table.error(
             second,
             Kind::Range,
