@@ -60,10 +60,11 @@ def read_exr(path, channel):
     # Channels apart: the library would else join R, G and B.
     with OpenEXR.File(str(path), separate_channels=True) as file:
         planes = {name: data.pixels.astype(np.float64) for name, data in file.channels().items()}
-    for name in ("illuminance", "Y"):
-        if name in planes:
-            value = planes[name]
-            break
+    grey = next((planes[name] for name in ("illuminance", "Y") if name in planes), None)
+    if grey is not None:
+        if channel != "Y":
+            raise SystemExit(f"{path}: there is no colour in it to compare")
+        value = grey
     else:
         value = sum(weight * planes[name] for name, weight in zip("RGB", CHANNELS[channel]))
     nothing = np.zeros_like(value)
@@ -140,7 +141,8 @@ def report(ours, theirs, block):
         plain = judge(ours, theirs, np.zeros_like(ours.bias))
         share = np.median(ours.bias[theirs.mean > 0] / theirs.mean[theirs.mean > 0])
         print(f"bias            median {share:.2%} of the block, taken off above; without: rms z {np.sqrt(np.mean(plain['z'] ** 2)):.3f}")
-    agree = min(verdict["p_total"], verdict["p_blocks"], verdict["p_worst"]) >= LEVEL / 3
+    # Not a number must not pass.
+    agree = bool(np.min([verdict[p] for p in ("p_total", "p_blocks", "p_worst")]) >= LEVEL / 3)
     print("agree" if agree else f"DIFFER: a p is below {LEVEL:g} / 3")
     return agree
 

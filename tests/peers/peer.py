@@ -17,6 +17,7 @@ import numpy as np
 
 
 def _render(world, integrator, seeds, samples):
+    mi.logger().clear_appenders()  # progress bars, which no log level silences; errors come as exceptions
     scene = mi.load_dict(world | {"integrator": integrator})
     return np.stack([np.array(mi.render(scene, spp=samples, seed=seed), dtype=np.float64) for seed in seeds])
 
