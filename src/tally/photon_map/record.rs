@@ -36,6 +36,17 @@ impl Frame {
         Self { low, step: (high - low) / 4_294_967_295.0 }
     }
 
+    /// The integers of a position in the box.
+    #[inline]
+    pub fn cell(&self, position: DVec3) -> [u32; 3] {
+        let of = |p: f64, low: f64, step: f64| if step > 0.0 { ((p - low) / step + 0.5) as u32 } else { 0 };
+        [
+            of(position.x, self.low.x, self.step.x),
+            of(position.y, self.low.y, self.step.y),
+            of(position.z, self.low.z, self.step.z),
+        ]
+    }
+
     /// Length of a step along each axis, m.
     #[inline]
     pub fn steps_m(&self) -> DVec3 {
@@ -50,17 +61,6 @@ impl Frame {
     /// The frame of these numbers, as [`Frame::low`] and [`Frame::steps_m`] give them.
     pub fn from_steps(low: DVec3, step: DVec3) -> Self {
         Self { low, step }
-    }
-
-    /// The integers of a position in the box.
-    #[inline]
-    pub fn cell(&self, position: DVec3) -> [u32; 3] {
-        let of = |p: f64, low: f64, step: f64| if step > 0.0 { ((p - low) / step + 0.5) as u32 } else { 0 };
-        [
-            of(position.x, self.low.x, self.step.x),
-            of(position.y, self.low.y, self.step.y),
-            of(position.z, self.low.z, self.step.z),
-        ]
     }
 
     /// The position of integers.
