@@ -100,7 +100,7 @@ pub fn render<const C: usize>(
                 done += 1;
             }
         }
-        killed.fetch_add(brush.killed, Ordering::Relaxed);
+        killed.fetch_add(brush.path.killed, Ordering::Relaxed);
         progress(done);
     });
     if pass.finishes {
@@ -116,21 +116,21 @@ struct Brush<'a, const C: usize> {
     pass: &'a Pass<'a, C>,
     sets: u32,
     samples_per_set: u32,
-    gathered: Gathered<C>,
-    killed: u64,
+    path: EyePath<'a, C>,
 }
 
 impl<'a, const C: usize> Brush<'a, C> {
     fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32) -> Self {
         let samples_per_set = view.spec.samples.div_ceil(sets);
-        let gathered = Gathered::new(pass.replicates.end as usize);
-        Self { view, pass, sets, samples_per_set, gathered, killed: 0 }
+        let looks = Looks { emission: pass.emission, direct: pass.direct, densities: pass.densities };
+        let path = EyePath::new(view, looks, pass.replicates.end as usize);
+        Self { view, pass, sets, samples_per_set, path }
     }
 
     fn paint(&mut self, [column, row]: [u32; 2], sums: &mut PixelSums<C>) {
         let seed = stream_key(self.view.seed, row, column, SALT);
         let of_sample = 1.0 / (f64::from(self.sets) * f64::from(self.samples_per_set));
-        self.gathered.clear();
+        self.path.gathered.clear();
         let mut before = [0.0; C];
         for set in 0..self.sets {
             let points = OwenPoints::with_coordinates(seed, set, NET_COORDINATES);
@@ -140,15 +140,15 @@ impl<'a, const C: usize> Brush<'a, C> {
                 (0..C).for_each(|c| found[c] += light[c]);
             }
             for c in 0..C {
-                found[c] += self.gathered.value[c] - before[c];
-                before[c] = self.gathered.value[c];
+                found[c] += self.path.gathered.value[c] - before[c];
+                before[c] = self.path.gathered.value[c];
                 sums.value[c] += found[c] * of_sample;
             }
             sums.by_set[set as usize] += luminance(found) / f64::from(self.samples_per_set);
         }
-        sums.bias += bias(&self.gathered) * of_sample;
+        sums.bias += bias(&self.path.gathered) * of_sample;
         for replicate in self.pass.replicates.clone() {
-            let luminance = self.gathered.by_replicate[replicate as usize] * of_sample;
+            let luminance = self.path.gathered.by_replicate[replicate as usize] * of_sample;
             sums.add_replicate(luminance, self.pass.finishes);
         }
     }
@@ -160,12 +160,7 @@ impl<'a, const C: usize> Brush<'a, C> {
         let place = DVec2::new(f64::from(column) + 0.5 + dx, f64::from(row) + 0.5 + dy);
         let pinhole = &self.view.pinhole;
         let ray = if pinhole.has_lens() { pinhole.ray_by_lens(place, pair()) } else { pinhole.ray(place) };
-        let looks =
-            Looks { emission: self.pass.emission, direct: self.pass.direct, densities: self.pass.densities };
-        let mut path = EyePath { view: self.view, looks, gathered: &mut self.gathered, killed: 0 };
-        let light = path.look(ray, &mut chooser);
-        self.killed += path.killed;
-        light
+        self.path.look(ray, &mut chooser)
     }
 }
 
