@@ -1,6 +1,7 @@
 //! Pixels: luminance, standard error, bias; and the sums that they come from.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::estimate::density::BIAS_PER_DIFFERENCE;
 
 /// A finished picture. `C` channels: 1 (luminance) or 3 (linear sRGB whose Y is luminance), cd/m2.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,25 +42,32 @@ pub const SETS: u32 = 4;
 pub(super) struct PixelSums<const C: usize> {
     /// Luminance by channel.
     pub value: [f64; C],
-    /// Estimated bias of the luminance.
-    pub bias: f64,
-    /// Luminance that each set of samples makes.
-    pub by_set: [f64; SETS as usize],
+    /// Luminance at the second bandwidth less that at the first, signed: what is too dark in one pass may be too bright in
+    /// another.
+    pub difference: f64,
+    /// Bias of the luminance that bandwidths don't tell.
+    pub further_bias: f64,
+    /// Luminance that each set of samples makes; its spread needs no more digits.
+    pub by_set: [f32; SETS as usize],
     /// Of the luminance that each finished replicate's photons make: sum, and sum of squares.
     pub photons: f64,
     pub photons_square: f64,
     /// Luminance from the photons of the replicate that is not finished.
     pub open: f64,
+    /// Square of the standard error owed to places with hardly a photon, whose spread says nothing.
+    pub sparse_square: f64,
 }
 
 impl<const C: usize> PixelSums<C> {
     pub(super) const NOTHING: Self = Self {
         value: [0.0; C],
-        bias: 0.0,
+        difference: 0.0,
+        further_bias: 0.0,
         by_set: [0.0; SETS as usize],
         photons: 0.0,
         photons_square: 0.0,
         open: 0.0,
+        sparse_square: 0.0,
     };
 
     /// A replicate's photons, or a part of them, make this luminance.
@@ -85,10 +93,21 @@ impl<const C: usize> PixelSums<C> {
             f64::NAN
         } else {
             let sets = &self.by_set[..sets as usize];
-            let mean = sets.iter().sum::<f64>() / s;
-            sets.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (s * (s - 1.0))
+            let mean = sets.iter().map(|x| f64::from(*x)).sum::<f64>() / s;
+            sets.iter().map(|x| (f64::from(*x) - mean).powi(2)).sum::<f64>() / (s * (s - 1.0))
         };
-        of_photons + of_eye
+        of_photons + self.sparse_square + of_eye
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.value = self.value.map(|v| v * factor);
+        self.by_set = self.by_set.map(|v| (f64::from(v) * factor) as f32);
+        for sum in [&mut self.difference, &mut self.further_bias, &mut self.photons, &mut self.open] {
+            *sum *= factor;
+        }
+        for square in [&mut self.photons_square, &mut self.sparse_square] {
+            *square *= factor * factor;
+        }
     }
 }
 
@@ -136,6 +155,11 @@ impl<const C: usize> Sums<C> {
         self.replicates
     }
 
+    /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it was to have.
+    pub fn scale(&mut self, factor: f64) {
+        self.tiles.iter_mut().for_each(|sums| sums.scale(factor));
+    }
+
     /// Column and row of the first pixel of a tile.
     pub(super) fn corner(pixels: [u32; 2], tile: usize) -> [u32; 2] {
         let across = pixels[0].div_ceil(TILE) as usize;
@@ -151,7 +175,7 @@ impl<const C: usize> Sums<C> {
     /// The picture of all passes so far.
     ///
     /// Standard error^2 = spread of the replicates' sums + spread of the sets of samples: that of the photons for these samples,
-    /// and that of the samples for these photons.
+    /// and that of the samples for these photons. Where there is hardly a photon the densities say what they owe.
     pub fn finish(&self) -> Film<C> {
         let [columns, rows] = self.pixels;
         let number = columns as usize * rows as usize;
@@ -166,7 +190,7 @@ impl<const C: usize> Sums<C> {
                 let sums = self.at(column, row);
                 film.value.push(sums.value);
                 film.standard_error.push(sums.variance(self.replicates, self.sets).sqrt());
-                film.bias.push(sums.bias);
+                film.bias.push(sums.difference.abs() * BIAS_PER_DIFFERENCE + sums.further_bias);
             }
         }
         film
@@ -199,5 +223,9 @@ mod tests {
         assert!((sums.variance(3, 4) - (3.0 + 1.0 / 6.0)).abs() < 1e-14);
         assert!(sums.variance(1, 4).is_nan() && sums.variance(3, 1).is_nan());
         assert_eq!(PixelSums::<1>::NOTHING.variance(0, 4), 0.0);
+        sums.sparse_square = 1.0;
+        let before = sums.variance(3, 4);
+        sums.scale(2.0);
+        assert!((sums.variance(3, 4) - 4.0 * before).abs() < 1e-13);
     }
 }

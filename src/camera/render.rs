@@ -45,6 +45,11 @@ impl<'d, const C: usize> Pass<'d, C> {
         Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false }
     }
 
+    /// Emitters, the background and direct light: all that no photon brings.
+    pub fn without_photons() -> Self {
+        Self { direct: true, ..Self::emission() }
+    }
+
     /// Further photons of these replicates.
     pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>, finishes: bool) -> Self {
         Self { densities, replicates, finishes, emission: false, direct: false }
@@ -144,9 +149,12 @@ impl<'a, const C: usize> Brush<'a, C> {
                 before[c] = self.path.gathered.value[c];
                 sums.value[c] += found[c] * of_sample;
             }
-            sums.by_set[set as usize] += luminance(found) / f64::from(self.samples_per_set);
+            sums.by_set[set as usize] += (luminance(found) / f64::from(self.samples_per_set)) as f32;
         }
-        sums.bias += bias(&self.path.gathered) * of_sample;
+        let doubts = Doubts::of(&self.path.gathered);
+        sums.difference += doubts.difference * of_sample;
+        sums.further_bias += doubts.further_bias * of_sample;
+        sums.sparse_square += (doubts.sparse * of_sample).powi(2);
         for replicate in self.pass.replicates.clone() {
             let luminance = self.path.gathered.by_replicate[replicate as usize] * of_sample;
             sums.add_replicate(luminance, self.pass.finishes);
@@ -164,9 +172,21 @@ impl<'a, const C: usize> Brush<'a, C> {
     }
 }
 
-/// Estimated bias of the luminance gathered, from the second bandwidth.
-fn bias<const C: usize>(gathered: &Gathered<C>) -> f64 {
-    luminance(gathered.value) - luminance(gathered.wide)
+/// What densities say about their luminance beside its spread over replicates.
+struct Doubts {
+    /// At the second bandwidth less at the first.
+    difference: f64,
+    /// Bias that bandwidths don't tell.
+    further_bias: f64,
+    /// Standard error owed to places with hardly a photon.
+    sparse: f64,
+}
+
+impl Doubts {
+    fn of<const C: usize>(gathered: &Gathered<C>) -> Self {
+        let difference = luminance(gathered.wide) - luminance(gathered.value);
+        Self { difference, further_bias: 0.0, sparse: 0.0 }
+    }
 }
 
 /// Luminance of one channel, which is that already, or of linear sRGB.

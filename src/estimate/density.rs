@@ -5,6 +5,9 @@ use glam::DVec3;
 use crate::geometry::{Geometry, Hit};
 use crate::tally::photon_map::{Photon, PhotonMap};
 
+/// What the difference between the two bandwidths is multiplied with for the bias of the narrower.
+pub const BIAS_PER_DIFFERENCE: f64 = 1.0;
+
 /// What is gathered for one pixel: sums over its samples. `C` channels: 1 or 3.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gathered<const C: usize> {
