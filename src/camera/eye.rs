@@ -6,16 +6,15 @@
 
 use glam::DVec3;
 
+use super::pinhole::EyeRay;
 use super::view::View;
 use crate::bsdf::value::Leg;
-use crate::bsdf::{Bsdf, EyeWeight, Incidence, Outcome};
+use crate::bsdf::{Bsdf, Dielectric, EyeWeight, Incidence, Outcome};
 use crate::estimate::density::{Density, Gathered};
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::scene::Scene;
 use crate::transport::walk::MAX_EVENTS;
-
-use super::pinhole::EyeRay;
 
 /// What an eye path looks for.
 #[derive(Debug, Clone, Copy)]
@@ -28,71 +27,166 @@ pub struct Looks<'d, const C: usize> {
     pub densities: &'d [Density<'d, C>],
 }
 
-/// An eye path on its way.
+/// An eye path, and what of it is still to be followed.
 pub(super) struct EyePath<'a, const C: usize> {
     pub view: &'a View<'a>,
     pub looks: Looks<'a, C>,
-    pub gathered: &'a mut Gathered<C>,
+    pub gathered: Gathered<C>,
     /// Paths that the guard against endless ones ended.
     pub killed: u64,
+    pending: Vec<Branch>,
 }
 
-impl<const C: usize> EyePath<'_, C> {
+/// A path on its way.
+#[derive(Debug, Clone, Copy)]
+struct Branch {
+    origin: DVec3,
+    direction: DVec3,
+    at: Whereabouts,
+    weight: EyeWeight,
+    /// Its part of the ways that glass offered.
+    share: f64,
+}
+
+/// Both ways at glass are followed as long as the fainter one keeps this share, else one of them is chosen: what glass mirrors is
+/// faint but often of something bright, and would be noise. At most as many paths as the share goes into 1 come of one.
+const LEAST_SHARE: f64 = 1.0 / 64.0;
+
+impl<'a, const C: usize> EyePath<'a, C> {
+    /// Nothing looked at yet; photons of so many replicates are told apart.
+    pub fn new(view: &'a View<'a>, looks: Looks<'a, C>, replicates: usize) -> Self {
+        Self { view, looks, gathered: Gathered::new(replicates), killed: 0, pending: Vec::new() }
+    }
+
     /// Follows a ray; gathers what photons bring and returns what is found without them, by channel, cd/m2.
     pub fn look<R: Chooser>(&mut self, ray: EyeRay, chooser: &mut R) -> [f64; 3] {
-        let scene = self.view.scene;
-        let EyeRay { mut origin, mut direction } = ray;
-        let mut at = self.view.start;
-        let mut weight = EyeWeight::ONE;
+        let EyeRay { origin, direction } = ray;
+        self.pending.push(Branch {
+            origin,
+            direction,
+            at: self.view.start,
+            weight: EyeWeight::ONE,
+            share: 1.0,
+        });
         let mut found = [0.0; 3];
-        for _ in 0..MAX_EVENTS {
-            let hit = scene.geometry.nearest(origin, direction, &at, &mut 0);
-            if self.looks.emission {
-                let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
-                add(&mut found, weight, seen(scene, origin, direction, end));
-                if hit.is_none() {
-                    add(&mut found, weight, self.view.spec.background_cd_m2);
-                }
-            }
-            let Some(hit) = hit else { return found };
-            let bsdf = scene.bsdf(hit.surface);
-            if bsdf.scatters() {
-                let lit = self.scattered(&hit, direction, &at, weight, chooser);
-                add(&mut found, EyeWeight::ONE, lit);
-            }
-            let Some((onward, through)) = pass_on(bsdf, &hit, direction, &mut weight, chooser) else {
-                return found;
-            };
-            at.leave(&hit, if hit.front == through { Side::Back } else { Side::Front });
-            (origin, direction) = (hit.position, onward);
+        while let Some(branch) = self.pending.pop() {
+            self.follow(branch, &mut found, chooser);
         }
-        self.killed += 1;
         found
     }
 
-    /// The light that a surface scatters to the eye: by shadow rays as returned, by photons as gathered.
-    fn scattered<R: Chooser>(
+    fn follow<R: Chooser>(&mut self, mut path: Branch, found: &mut [f64; 3], chooser: &mut R) {
+        let scene = self.view.scene;
+        for _ in 0..MAX_EVENTS {
+            let Branch { origin, direction, weight, .. } = path;
+            let hit = scene.geometry.nearest(origin, direction, &path.at, &mut 0);
+            if self.looks.emission {
+                let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
+                add(found, weight, seen(scene, origin, direction, end));
+                if hit.is_none() {
+                    add(found, weight, self.view.spec.background_cd_m2);
+                }
+            }
+            let Some(hit) = hit else { return };
+            let bsdf = scene.bsdf(hit.surface);
+            if bsdf.scatters() {
+                let lit = self.scattered(&hit, &path, chooser);
+                add(found, weight, lit);
+            }
+            let onward = match bsdf {
+                Bsdf::Dielectric(glass) => Some(self.pass_glass(glass, &hit, &mut path, chooser)),
+                _ => pass_on(bsdf, &hit, &mut path, chooser),
+            };
+            let Some((onward, through)) = onward else { return };
+            path.leave(&hit, onward, through);
+        }
+        self.killed += 1;
+    }
+
+    /// Glass: mirrored and refracted, both where both are worth it. Of these the mirrored path waits.
+    fn pass_glass<R: Chooser>(
         &mut self,
+        glass: &Dielectric,
         hit: &Hit,
-        direction: DVec3,
-        at: &Whereabouts,
-        weight: EyeWeight,
+        path: &mut Branch,
         chooser: &mut R,
-    ) -> [f64; 3] {
+    ) -> (DVec3, bool) {
+        let at = incidence(hit, path.direction);
+        let way = |mirrored: bool| {
+            let mut decided = Decided { mirrored, reflectance: None };
+            match glass.interact(&at, &mut decided) {
+                Outcome::Leaves { direction, through, .. } => (direction, through, decided.reflectance),
+                // Glass does not absorb.
+                Outcome::Absorbed | Outcome::BelowHorizon => (path.direction, true, None),
+            }
+        };
+        let (mut onward, mut through, reflectance) = way(false);
+        if let Some(r) = reflectance {
+            let (mirrored, stays, _) = way(true);
+            if path.share * r.min(1.0 - r) >= LEAST_SHARE {
+                let mut branch = *path;
+                branch.weight.scale(r);
+                branch.share *= r;
+                branch.leave(hit, mirrored, stays);
+                self.pending.push(branch);
+                path.weight.scale(1.0 - r);
+                path.share *= 1.0 - r;
+            } else if chooser.happens(r) {
+                (onward, through) = (mirrored, stays);
+            }
+        }
+        if through {
+            path.weight.scale(glass.luminance_factor(hit.front));
+        }
+        (onward, through)
+    }
+
+    /// The light that a surface scatters to the eye: by shadow rays as returned, by photons as gathered.
+    fn scattered<R: Chooser>(&mut self, hit: &Hit, path: &Branch, chooser: &mut R) -> [f64; 3] {
         let bsdf = self.view.scene.bsdf(hit.surface);
-        let wo = Leg { direction: -direction, front: hit.front };
+        let wo = Leg { direction: -path.direction, front: hit.front };
         for density in self.looks.densities {
             let value = |travel: DVec3, front: bool| {
                 channels(bsdf.value_between(hit.normal, Leg { direction: -travel, front }, wo))
             };
-            density.gather(hit, channels(weight.weight()), value, self.gathered);
+            density.gather(hit, channels(path.weight.weight()), value, &mut self.gathered);
         }
         if !self.looks.direct {
             return [0.0; 3];
         }
-        let mut lit = [0.0; 3];
-        add(&mut lit, weight, direct(self.view.scene, hit, wo, at, chooser));
-        lit
+        direct(self.view.scene, hit, wo, &path.at, chooser)
+    }
+}
+
+impl Branch {
+    fn leave(&mut self, hit: &Hit, onward: DVec3, through: bool) {
+        self.at.leave(hit, if hit.front == through { Side::Back } else { Side::Front });
+        (self.origin, self.direction) = (hit.position, onward);
+    }
+}
+
+fn incidence(hit: &Hit, direction: DVec3) -> Incidence {
+    let sign = if hit.front { 1.0 } else { -1.0 };
+    Incidence { direction, facet: hit.normal * sign, smooth: hit.shading_normal * sign, front: hit.front }
+}
+
+/// Takes one way at glass and notes how likely the mirrored one is, if both are possible.
+struct Decided {
+    mirrored: bool,
+    reflectance: Option<f64>,
+}
+
+impl Chooser for Decided {
+    fn happens(&mut self, probability: f64) -> bool {
+        if probability <= 0.0 || probability >= 1.0 {
+            return probability >= 1.0;
+        }
+        self.reflectance = Some(probability);
+        self.mirrored
+    }
+
+    fn uniform(&mut self, _: Purpose) -> f64 {
+        0.0
     }
 }
 
@@ -143,34 +237,17 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
     sum
 }
 
-/// Where an eye path goes on: (direction, whether through the surface); `None` where it ends.
-fn pass_on<R: Chooser>(
-    bsdf: &Bsdf,
-    hit: &Hit,
-    direction: DVec3,
-    weight: &mut EyeWeight,
-    chooser: &mut R,
-) -> Option<(DVec3, bool)> {
+/// Where an eye path goes on from anything but glass: (direction, whether through the surface); `None` where it ends.
+fn pass_on<R: Chooser>(bsdf: &Bsdf, hit: &Hit, path: &mut Branch, chooser: &mut R) -> Option<(DVec3, bool)> {
     match bsdf {
-        Bsdf::Dielectric(_) | Bsdf::Mirror { .. } => {
-            let sign = if hit.front { 1.0 } else { -1.0 };
-            let facing = Incidence {
-                direction,
-                facet: hit.normal * sign,
-                smooth: hit.shading_normal * sign,
-                front: hit.front,
-            };
-            let Outcome::Leaves { direction: onward, through, .. } = bsdf.interact(&facing, chooser, weight)
-            else {
-                return None;
-            };
-            if let (Bsdf::Dielectric(dielectric), true) = (bsdf, through) {
-                weight.scale(dielectric.luminance_factor(hit.front));
+        Bsdf::Mirror { .. } => {
+            match bsdf.interact(&incidence(hit, path.direction), chooser, &mut path.weight) {
+                Outcome::Leaves { direction, through, .. } => Some((direction, through)),
+                Outcome::Absorbed | Outcome::BelowHorizon => None,
             }
-            Some((onward, through))
         }
         Bsdf::Tabulated(table) => {
-            let [mirrored, straight] = table.beyond(hit.normal, direction, hit.front);
+            let [mirrored, straight] = table.beyond(hit.normal, path.direction, hit.front);
             // Both only where the two sides of a table differ: one of them, counted twice.
             let (way, times) = match (mirrored, straight) {
                 (Some(a), Some(b)) => (if chooser.happens(0.5) { a } else { b }, 2.0),
@@ -178,9 +255,9 @@ fn pass_on<R: Chooser>(
                 (None, None) => return None,
             };
             let part = way.part.map(|p| p * times);
-            weight.attenuate(part, chooser).then_some((way.direction, way.through))
+            path.weight.attenuate(part, chooser).then_some((way.direction, way.through))
         }
-        Bsdf::Lambertian { .. } | Bsdf::Absorber => None,
+        Bsdf::Dielectric(_) | Bsdf::Lambertian { .. } | Bsdf::Absorber => None,
     }
 }
 

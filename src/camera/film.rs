@@ -1,6 +1,7 @@
 //! Pixels: luminance, standard error, bias; and the sums that they come from.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::estimate::density::BIAS_PER_DIFFERENCE;
 
 /// A finished picture. `C` channels: 1 (luminance) or 3 (linear sRGB whose Y is luminance), cd/m2.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,47 +42,41 @@ pub const SETS: u32 = 4;
 pub(super) struct PixelSums<const C: usize> {
     /// Luminance by channel.
     pub value: [f64; C],
-    /// Estimated bias of the luminance.
-    pub bias: f64,
-    /// Luminance that each set of samples makes.
-    pub by_set: [f64; SETS as usize],
-    /// Sum of squares of the luminance that each closed replicate's photons make, and the sum.
+    /// Luminance at the second bandwidth less that at the first, signed: what is too dark in one pass may be too bright in
+    /// another.
+    pub difference: f64,
+    /// Bias of the luminance that bandwidths don't tell.
+    pub further_bias: f64,
+    /// Luminance that each set of samples makes; its spread needs no more digits.
+    pub by_set: [f32; SETS as usize],
+    /// Of the luminance that each finished replicate's photons make: sum, and sum of squares.
     pub photons: f64,
     pub photons_square: f64,
-    /// Luminance from the photons of the replicate that is open.
+    /// Luminance from the photons of the replicate that is not finished.
     pub open: f64,
-    /// Standard error of the luminance owed to places with hardly any photons.
-    pub sparse: f64,
+    /// Square of the standard error owed to places with hardly a photon, whose spread says nothing.
+    pub sparse_square: f64,
 }
 
 impl<const C: usize> PixelSums<C> {
     pub(super) const NOTHING: Self = Self {
         value: [0.0; C],
-        bias: 0.0,
+        difference: 0.0,
+        further_bias: 0.0,
         by_set: [0.0; SETS as usize],
         photons: 0.0,
         photons_square: 0.0,
         open: 0.0,
-        sparse: 0.0,
+        sparse_square: 0.0,
     };
 
-    /// Photons of a replicate make this luminance; `fresh`: of another one than those before, which is closed.
-    pub(super) fn add_replicate(&mut self, luminance: f64, fresh: bool) {
-        if fresh {
+    /// A replicate's photons, or a part of them, make this luminance.
+    pub(super) fn add_replicate(&mut self, luminance: f64, finished: bool) {
+        self.open += luminance;
+        if finished {
             self.photons += self.open;
             self.photons_square += self.open * self.open;
             self.open = 0.0;
-        }
-        self.open += luminance;
-    }
-
-    /// Another flux of a photon.
-    fn scale(&mut self, factor: f64) {
-        self.value = self.value.map(|v| v * factor);
-        self.by_set = self.by_set.map(|v| v * factor);
-        self.photons_square *= factor * factor;
-        for v in [&mut self.bias, &mut self.photons, &mut self.open, &mut self.sparse] {
-            *v *= factor;
         }
     }
 
@@ -92,20 +87,27 @@ impl<const C: usize> PixelSums<C> {
         let of_photons = match replicates {
             0 => 0.0,
             1 => f64::NAN,
-            _ => {
-                let sum = self.photons + self.open;
-                let square = self.photons_square + self.open * self.open;
-                (r * square - sum * sum).max(0.0) / (r - 1.0) + self.sparse * self.sparse
-            }
+            _ => (r * self.photons_square - self.photons * self.photons).max(0.0) / (r - 1.0),
         };
         let of_eye = if sets < 2 {
             f64::NAN
         } else {
             let sets = &self.by_set[..sets as usize];
-            let mean = sets.iter().sum::<f64>() / s;
-            sets.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (s * (s - 1.0))
+            let mean = sets.iter().map(|x| f64::from(*x)).sum::<f64>() / s;
+            sets.iter().map(|x| (f64::from(*x) - mean).powi(2)).sum::<f64>() / (s * (s - 1.0))
         };
-        of_photons + of_eye
+        of_photons + self.sparse_square + of_eye
+    }
+
+    fn scale(&mut self, factor: f64) {
+        self.value = self.value.map(|v| v * factor);
+        self.by_set = self.by_set.map(|v| (f64::from(v) * factor) as f32);
+        for sum in [&mut self.difference, &mut self.further_bias, &mut self.photons, &mut self.open] {
+            *sum *= factor;
+        }
+        for square in [&mut self.photons_square, &mut self.sparse_square] {
+            *square *= factor * factor;
+        }
     }
 }
 
@@ -115,8 +117,8 @@ pub struct Sums<const C: usize> {
     pixels: [u32; 2],
     /// Tile by tile, each row by row; tiles at the right and lower end are whole, too.
     pub(super) tiles: Vec<PixelSums<C>>,
-    /// The replicate that is open: the last of which photons are in.
-    pub(super) open: u32,
+    /// Replicates whose photons are all in.
+    pub(super) replicates: u32,
     /// Sets of samples that there are.
     pub(super) sets: u32,
 }
@@ -140,7 +142,7 @@ impl<const C: usize> Sums<C> {
         }
         let [across, down] = pixels.map(|n| n.div_ceil(TILE) as usize);
         let tiles = vec![PixelSums::NOTHING; across * down * TILE_PIXELS];
-        Ok(Self { pixels, tiles, open: 0, sets: 0 })
+        Ok(Self { pixels, tiles, replicates: 0, sets: 0 })
     }
 
     /// Columns and rows.
@@ -148,9 +150,14 @@ impl<const C: usize> Sums<C> {
         self.pixels
     }
 
-    /// Photons turned out to carry another flux: scales what is in so far, which must be light of photons alone.
+    /// Replicates whose photons are all in.
+    pub fn replicates(&self) -> u32 {
+        self.replicates
+    }
+
+    /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it was to have.
     pub fn scale(&mut self, factor: f64) {
-        self.tiles.iter_mut().for_each(|pixel| pixel.scale(factor));
+        self.tiles.iter_mut().for_each(|sums| sums.scale(factor));
     }
 
     /// Column and row of the first pixel of a tile.
@@ -165,11 +172,11 @@ impl<const C: usize> Sums<C> {
         &self.tiles[tile * TILE_PIXELS + (row % TILE * TILE + column % TILE) as usize]
     }
 
-    /// The picture of all passes so far, in which there are photons of so many replicates.
+    /// The picture of all passes so far.
     ///
     /// Standard error^2 = spread of the replicates' sums + spread of the sets of samples: that of the photons for these samples,
-    /// and that of the samples for these photons.
-    pub fn finish(&self, replicates: u32) -> Film<C> {
+    /// and that of the samples for these photons. Where there is hardly a photon the densities say what they owe.
+    pub fn finish(&self) -> Film<C> {
         let [columns, rows] = self.pixels;
         let number = columns as usize * rows as usize;
         let mut film = Film {
@@ -182,8 +189,8 @@ impl<const C: usize> Sums<C> {
             for column in 0..columns {
                 let sums = self.at(column, row);
                 film.value.push(sums.value);
-                film.standard_error.push(sums.variance(replicates, self.sets).sqrt());
-                film.bias.push(sums.bias);
+                film.standard_error.push(sums.variance(self.replicates, self.sets).sqrt());
+                film.bias.push(sums.difference.abs() * BIAS_PER_DIFFERENCE + sums.further_bias);
             }
         }
         film
@@ -208,13 +215,17 @@ mod tests {
     #[test]
     fn the_error_is_that_of_replicates_and_of_sets() {
         let mut sums = PixelSums::<1>::NOTHING;
-        for (part, fresh) in [(1.0, false), (2.0, false), (5.0, true), (4.0, true)] {
-            sums.add_replicate(part, fresh);
+        for (part, finished) in [(1.0, false), (2.0, true), (5.0, true), (4.0, true)] {
+            sums.add_replicate(part, finished);
         }
         sums.by_set = [11.0, 12.0, 13.0, 12.0];
         // Sum of three with variance 1: 3. Mean of four with variance 2/3: 1/6.
         assert!((sums.variance(3, 4) - (3.0 + 1.0 / 6.0)).abs() < 1e-14);
         assert!(sums.variance(1, 4).is_nan() && sums.variance(3, 1).is_nan());
         assert_eq!(PixelSums::<1>::NOTHING.variance(0, 4), 0.0);
+        sums.sparse_square = 1.0;
+        let before = sums.variance(3, 4);
+        sums.scale(2.0);
+        assert!((sums.variance(3, 4) - 4.0 * before).abs() < 1e-13);
     }
 }

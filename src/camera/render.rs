@@ -24,8 +24,10 @@ pub struct Pass<'d, const C: usize> {
     /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run, so that passes add
     /// up.
     pub densities: &'d [Density<'d, C>],
-    /// Replicates that may have photons in this pass; the first may have had some in the pass before.
+    /// Replicates that have photons in this pass.
     pub replicates: Range<u32>,
+    /// Whether these replicates end with this pass. A pass that is a part of a replicate has one replicate.
+    pub finishes: bool,
     /// Whether emitters and the background are added: in one pass only.
     pub emission: bool,
     /// Whether direct light is added: in one pass only.
@@ -35,22 +37,22 @@ pub struct Pass<'d, const C: usize> {
 impl<'d, const C: usize> Pass<'d, C> {
     /// All there is: densities of all photons, of this many replicates.
     pub fn whole(densities: &'d [Density<'d, C>], replicates: u32) -> Self {
-        Self { densities, replicates: 0..replicates, emission: true, direct: true }
+        Self { densities, replicates: 0..replicates, finishes: true, emission: true, direct: true }
     }
 
     /// Emitters and the background alone: what is left to the eye where every photon is joined to the pinhole.
     pub fn emission() -> Self {
-        Self { densities: &[], replicates: 0..0, emission: true, direct: false }
+        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false }
     }
 
-    /// Photons of these replicates.
-    pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>) -> Self {
-        Self { densities, replicates, emission: false, direct: false }
-    }
-
-    /// What needs no photons: direct light, emitters and the background.
+    /// Emitters, the background and direct light: all that no photon brings.
     pub fn without_photons() -> Self {
-        Self { densities: &[], replicates: 0..0, emission: true, direct: true }
+        Self { direct: true, ..Self::emission() }
+    }
+
+    /// Further photons of these replicates.
+    pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>, finishes: bool) -> Self {
+        Self { densities, replicates, finishes, emission: false, direct: false }
     }
 }
 
@@ -89,9 +91,8 @@ pub fn render<const C: usize>(
     let pixels = view.spec.pixels;
     let killed = AtomicU64::new(0);
     let sets = SETS.min(view.spec.samples);
-    let open = sums.open;
     sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
-        let mut brush = Brush::new(view, pass, sets, open);
+        let mut brush = Brush::new(view, pass, sets);
         let corner = Sums::<C>::corner(pixels, tile);
         let mut done = 0;
         for (k, sums) in sums.iter_mut().enumerate() {
@@ -104,10 +105,12 @@ pub fn render<const C: usize>(
                 done += 1;
             }
         }
-        killed.fetch_add(brush.killed, Ordering::Relaxed);
+        killed.fetch_add(brush.path.killed, Ordering::Relaxed);
         progress(done);
     });
-    sums.open = pass.replicates.end.saturating_sub(1).max(open);
+    if pass.finishes {
+        sums.replicates += pass.replicates.len() as u32;
+    }
     sums.sets = sets;
     Ok(Rendered { complete: !interrupt.load(Ordering::Relaxed), killed: killed.into_inner() })
 }
@@ -117,24 +120,22 @@ struct Brush<'a, const C: usize> {
     view: &'a View<'a>,
     pass: &'a Pass<'a, C>,
     sets: u32,
-    /// The replicate whose photons came last before this pass.
-    open: u32,
     samples_per_set: u32,
-    gathered: Gathered<C>,
-    killed: u64,
+    path: EyePath<'a, C>,
 }
 
 impl<'a, const C: usize> Brush<'a, C> {
-    fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32, open: u32) -> Self {
+    fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32) -> Self {
         let samples_per_set = view.spec.samples.div_ceil(sets);
-        let gathered = Gathered::new(pass.replicates.end as usize);
-        Self { view, pass, sets, open, samples_per_set, gathered, killed: 0 }
+        let looks = Looks { emission: pass.emission, direct: pass.direct, densities: pass.densities };
+        let path = EyePath::new(view, looks, pass.replicates.end as usize);
+        Self { view, pass, sets, samples_per_set, path }
     }
 
     fn paint(&mut self, [column, row]: [u32; 2], sums: &mut PixelSums<C>) {
         let seed = stream_key(self.view.seed, row, column, SALT);
         let of_sample = 1.0 / (f64::from(self.sets) * f64::from(self.samples_per_set));
-        self.gathered.clear();
+        self.path.gathered.clear();
         let mut before = [0.0; C];
         for set in 0..self.sets {
             let points = OwenPoints::with_coordinates(seed, set, NET_COORDINATES);
@@ -144,17 +145,19 @@ impl<'a, const C: usize> Brush<'a, C> {
                 (0..C).for_each(|c| found[c] += light[c]);
             }
             for c in 0..C {
-                found[c] += self.gathered.value[c] - before[c];
-                before[c] = self.gathered.value[c];
+                found[c] += self.path.gathered.value[c] - before[c];
+                before[c] = self.path.gathered.value[c];
                 sums.value[c] += found[c] * of_sample;
             }
-            sums.by_set[set as usize] += luminance(found) / f64::from(self.samples_per_set);
+            sums.by_set[set as usize] += (luminance(found) / f64::from(self.samples_per_set)) as f32;
         }
-        sums.bias += self.gathered.bias() * of_sample;
-        sums.sparse += self.gathered.sparse * of_sample;
+        let doubts = Doubts::of(&self.path.gathered);
+        sums.difference += doubts.difference * of_sample;
+        sums.further_bias += doubts.further_bias * of_sample;
+        sums.sparse_square += (doubts.sparse * of_sample).powi(2);
         for replicate in self.pass.replicates.clone() {
-            let luminance = self.gathered.by_replicate[replicate as usize] * of_sample;
-            sums.add_replicate(luminance, replicate > self.open);
+            let luminance = self.path.gathered.by_replicate[replicate as usize] * of_sample;
+            sums.add_replicate(luminance, self.pass.finishes);
         }
     }
 
@@ -165,12 +168,24 @@ impl<'a, const C: usize> Brush<'a, C> {
         let place = DVec2::new(f64::from(column) + 0.5 + dx, f64::from(row) + 0.5 + dy);
         let pinhole = &self.view.pinhole;
         let ray = if pinhole.has_lens() { pinhole.ray_by_lens(place, pair()) } else { pinhole.ray(place) };
-        let looks =
-            Looks { emission: self.pass.emission, direct: self.pass.direct, densities: self.pass.densities };
-        let mut path = EyePath { view: self.view, looks, gathered: &mut self.gathered, killed: 0 };
-        let light = path.look(ray, &mut chooser);
-        self.killed += path.killed;
-        light
+        self.path.look(ray, &mut chooser)
+    }
+}
+
+/// What densities say about their luminance beside its spread over replicates.
+struct Doubts {
+    /// At the second bandwidth less at the first.
+    difference: f64,
+    /// Bias that bandwidths don't tell.
+    further_bias: f64,
+    /// Standard error owed to places with hardly a photon.
+    sparse: f64,
+}
+
+impl Doubts {
+    fn of<const C: usize>(gathered: &Gathered<C>) -> Self {
+        let difference = luminance(gathered.second) - luminance(gathered.value);
+        Self { difference, further_bias: gathered.nearest_bias, sparse: gathered.sparse }
     }
 }
 

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use crate::camera::Film;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::image::atomic::write_atomically;
-use crate::image::exr::{Channel, Data, Value, write_maps};
 use crate::report::camera::CameraReport;
+use crate::report::picture::{camera_attributes, write_camera};
 use crate::run::Plan;
 use crate::run::picture::{self, AnyPicture, Watch, hash_of_photons, picture_of_saved};
 use crate::scene::Scene;
@@ -83,26 +82,18 @@ pub(super) fn save(path: &Path, picture: &AnyPicture) -> Result<()> {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub(super) fn write(directory: &Path, spec: &CameraSpec, picture: &AnyPicture) -> Result<CameraReport> {
+pub(super) fn write(
+    directory: &Path,
+    scene: &Scene,
+    plan: &Plan,
+    spec: &CameraSpec,
+    picture: &AnyPicture,
+) -> Result<CameraReport> {
+    let summary = picture.summary();
+    let attributes = camera_attributes(scene, plan, summary.photons, summary.replicates, spec);
     let files = match picture {
-        AnyPicture::Grey(picture) => write_film(directory, &picture.film)?,
-        AnyPicture::Rgb(picture) => write_film(directory, &picture.film)?,
+        AnyPicture::Grey(picture) => write_camera(directory, "camera", spec, &picture.film, &attributes)?,
+        AnyPicture::Rgb(picture) => write_camera(directory, "camera", spec, &picture.film, &attributes)?,
     };
-    Ok(CameraReport::new(spec, picture.summary(), &files))
-}
-
-fn write_film<const C: usize>(directory: &Path, film: &Film<C>) -> Result<Vec<String>> {
-    let floats = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v as f32).collect::<Vec<f32>>();
-    let colours: Vec<Vec<f32>> = (0..C).map(|c| floats(&mut film.value.iter().map(|v| v[c]))).collect();
-    let names: &[&str] = if C == 1 { &["Y"] } else { &["R", "G", "B"] };
-    let error = floats(&mut film.standard_error.iter().copied());
-    let bias = floats(&mut film.bias.iter().copied());
-    let mut all: Vec<Channel<'_>> =
-        names.iter().zip(&colours).map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
-    all.push(Channel { name: "standard_error", data: Data::F32(&error) });
-    all.push(Channel { name: "bias", data: Data::F32(&bias) });
-    let [width, height] = film.pixels.map(|n| n as usize);
-    let unit = [("caustix.unit".to_string(), Value::Text("cd/m2".to_string()))];
-    write_maps(directory.join("camera.exr"), width, height, &all, &unit)?;
-    Ok(vec!["camera.exr".to_string()])
+    Ok(CameraReport::new(spec, summary, &files))
 }

@@ -81,7 +81,7 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
     }
     let mut camera = None;
     if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
-        let written = picture::write(&directory, spec, picture);
+        let written = picture::write(&directory, &scene, &plan, spec, picture);
         camera = written.map_err(|e| unwritten.push(e)).ok();
         unwritten.extend(save_photons(args, &outcome, picture).err());
     }
@@ -165,7 +165,7 @@ fn seen_again(
     let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
     let picture = pool.install(|| picture::of_saved(map, scene, plan, watch)).map_err(one)?;
     if let Some(spec) = &scene.camera {
-        let report = picture::write(&args.output, spec, &picture).map_err(one)?;
+        let report = picture::write(&args.output, scene, plan, spec, &picture).map_err(one)?;
         if !args.quiet {
             print(&format!("scene      {}\n", scene.identity.name));
             print(&format!(

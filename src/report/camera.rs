@@ -163,6 +163,7 @@ mod tests {
             photons_kept: 1_234_567,
             passes: 2,
             bandwidth: Some([chosen(0.0125, Some(81.25)), chosen(0.1, None)]),
+            eye_paths_killed: 0,
             cost: Cost { median_bias_percent: Some(1.234), median_standard_error_percent: None },
             time_s: 12.345,
             from_file: false,

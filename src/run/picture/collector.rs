@@ -282,9 +282,10 @@ impl<'a, const C: usize> Collector<'a, C> {
         };
         let of = std::mem::replace(&mut self.held_of, 0..0);
         let of = if of.is_empty() && self.open { self.replicates - 1..self.replicates } else { of };
-        self.eye.add(&Seen { maps: &maps, photon_lm, bandwidths, replicates: of, last })?;
         // What an interrupt left of a replicate closes it.
-        self.open = !(self.whole || last);
+        let finishes = self.whole || last;
+        self.eye.add(&Seen { maps: &maps, photon_lm, bandwidths, replicates: of, finishes, last })?;
+        self.open = !finishes;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
         let [caustic, diffuse] = &maps;
@@ -307,7 +308,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             photons,
         });
         let chosen = self.bandwidths.map(|b| b.chosen());
-        let (film, killed) = self.eye.finish(self.replicates);
+        let (film, killed) = self.eye.finish();
         let cost = Cost::of(&film);
         let summary = PictureSummary {
             method: crate::scene::camera::Method::Map,

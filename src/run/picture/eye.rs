@@ -63,6 +63,8 @@ pub(super) struct Seen<'m, const C: usize> {
     pub(super) bandwidths: Bandwidths,
     /// The replicates they are of; the first may have had photons in the pass before.
     pub(super) replicates: Range<u32>,
+    /// Whether these replicates end with this pass.
+    pub(super) finishes: bool,
     /// Whether it is the last pass, in which light that no photon brings is seen as well.
     pub(super) last: bool,
 }
@@ -133,7 +135,13 @@ impl<'a, const C: usize> Eye<'a, C> {
             Density::on(Arc::clone(&self.footprints), &seen.maps[k], seen.photon_lm, choice)
         });
         let replicates = seen.replicates.clone();
-        self.render(&Pass { densities: &densities, replicates, emission: seen.last, direct: seen.last })
+        self.render(&Pass {
+            densities: &densities,
+            replicates,
+            finishes: seen.finishes,
+            emission: seen.last,
+            direct: seen.last,
+        })
     }
 
     /// A photon turned out to carry another flux than passes so far took it for.
@@ -165,8 +173,8 @@ impl<'a, const C: usize> Eye<'a, C> {
         Ok(())
     }
 
-    /// The film of photons of so many replicates, and the number of eye paths that did not end by themselves.
-    pub(super) fn finish(self, replicates: u32) -> (Film<C>, u64) {
-        (self.sums.finish(replicates), self.killed)
+    /// The film, and the number of eye paths that did not end by themselves.
+    pub(super) fn finish(self) -> (Film<C>, u64) {
+        (self.sums.finish(), self.killed)
     }
 }

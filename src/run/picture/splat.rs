@@ -46,7 +46,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     )?;
     let started = Instant::now();
     eye.add_emitters()?;
-    let (film, killed) = eye.finish(0);
+    let (film, killed) = eye.finish();
     let film = with_splats(film, &moments, &outcome);
     let cost = Cost::of(&film);
     let summary = PictureSummary {
