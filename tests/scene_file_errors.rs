@@ -189,7 +189,7 @@ fn emitters() {
         &emitter("[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 1]\nflux_lm = 1\n«radius = 2"),
         Kind::Unknown,
         "the unknown key `radius` in an isotropic [[emitter]]",
-        "name, type, position or flux_lm",
+        "name, type, position, flux_lm, colour or cct_k",
     );
     assert_eq!(error.advice(), None);
     let beam = "[[emitter]]\ntype = \"collimated\"\nposition = [0, 0, 1]\nflux_lm = 1\n";
@@ -657,7 +657,7 @@ fn run() {
 #[test]
 fn all_errors_are_told_in_the_order_of_the_file() {
     let text = format!(
-        "[[emitter]]\ntype = \"isotropic\"\nposition = [«nan, 0, «inf]\nflux_lm = «0\n«colour = 1\n\
+        "[[emitter]]\ntype = \"isotropic\"\nposition = [«nan, 0, «inf]\nflux_lm = «0\n«color = 1\n\
          [material.black]\ntype = «\"blak\"\n{}[[receiver]]\nsurface = «\"floor\"\nside = «\"up\"\n",
         PLATE.replace("[1, 0, 0]", "«[0, 0, 0]"),
     );

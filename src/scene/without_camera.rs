@@ -39,7 +39,7 @@ fn camera_ranges(text: &str, root: &DeTable<'_>) -> Vec<Range<usize>> {
         // The next thing of the scene that is not the camera's stands under a header of its own.
         let next = starts(root).into_iter().filter(|at| *at > span.start).min();
         let next = next.map_or(text.len(), line_start);
-        return vec![start..next];
+        return std::iter::once(start..next).collect();
     }
     if opening(span.start, '{') {
         return vec![lines(key.span().start..span.end)];
