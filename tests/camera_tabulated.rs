@@ -24,7 +24,7 @@ use tabulated_support::{lobe, steps};
 /// Reflects and transmits, unlike in azimuth; `strength` 1 scatters about 0.6 of the light.
 fn table(strength: f64) -> ScatterTable {
     let angles =
-        || [steps(0.0, 90.0, 15.0), steps(0.0, 315.0, 45.0), steps(0.0, 90.0, 10.0), steps(0.0, 360.0, 15.0)];
+        || [steps(0.0, 90.0, 15.0), steps(0.0, 360.0, 45.0), steps(0.0, 90.0, 10.0), steps(0.0, 360.0, 15.0)];
     let value = |share: f64| {
         move |_: usize, phi_i: f64, theta_i: f64, polar: f64, azimuth: f64| {
             let turn = (azimuth + 2.0 * phi_i).to_radians();

@@ -56,7 +56,7 @@ fn in_a_closed_enclosure_luminance_is_le_over_1_minus_a_everywhere() {
     .into_iter()
     .enumerate()
     {
-        let seen = pixel(&scene, &narrow(position, look_at), 9, 0.25);
+        let seen = pixel(&scene, &narrow(position, look_at), 13, 0.25);
         // Emitters themselves, one reflection, two and more.
         assert_close(&format!("view {k}: emission"), seen.emission, 1.0, 1e-9);
         assert_close(&format!("view {k}: direct"), seen.direct, 0.5, 0.02);
@@ -81,19 +81,18 @@ fn a_lit_plate_is_as_bright_directly_by_mirror_and_less_fresnel_through_a_pane()
         beam([0.0, 0.0, -3.0], [0.0, 0.0, 1.0], 0.5, 100.0),
         ceiling("plate", "white", [0.0; 3], 0.6),
         plate("mirror", "silver", [2.0, 0.0, -1.0], [0.0, 0.0, 0.9], [0.0, 0.9, 0.0]),
-        plate("upper face", "glass", [-2.0, 0.0, -0.5], [0.4, 0.0, 0.4], [0.0, 0.4, 0.0]),
     ];
     let lit = 100.0 / (PI * 0.25) * 0.8 / PI;
-    let scene = scene(&parts[..3]);
+    let scene = scene(&parts);
     let direct = pixel(&scene, &narrow([1.0, 0.0, -1.0], [0.0; 3]), 4, 0.1);
     assert_close("directly", direct.direct, lit, 1e-9);
     let mirrored = pixel(&scene, &narrow([1.0, 0.0, -1.0], [4.0, 0.0, 0.0]), 4, 0.1);
     assert_close("by mirror", mirrored.direct, 0.9 * lit, 1e-9);
-    // The pane hangs where the eye looks at right angles through it.
+    // A pane stands between.
     let text =
-        [parts[0].clone(), parts[1].clone(), cuboid("pane", "glass", [0.8, -0.2, -1.0], [0.9, 0.2, -0.2])];
+        [parts[0].clone(), parts[1].clone(), cuboid("pane", "glass", [0.8, -0.5, -1.0], [0.9, 0.5, 0.5])];
     let through = closed_support::scene(&(MATERIALS.to_string() + &text.concat()));
-    let spec = CameraSpec { samples: 4096, ..narrow([1.6, 0.0, -0.4], [0.0, 0.0, -0.0]) };
+    let spec = CameraSpec { samples: 4096, ..narrow([1.6, 0.0, -0.4], [0.0; 3]) };
     // Faces at x = 0.8 and 0.9: incidence by the direction's x.
     let cos_i: f64 = 1.6 / (1.6f64.powi(2) + 0.4f64.powi(2)).sqrt();
     let cos_t = (1.0 - (1.0 - cos_i * cos_i) / 2.25).sqrt();
@@ -186,7 +185,7 @@ fn no_place_for_a_camera() {
     let scene = scene(&text);
     let on = View::new(&scene, &narrow([0.2, 0.2, 0.0], [0.0, 0.0, 1.0]), 1).unwrap_err();
     assert!(on.kind() == Kind::Geometry && on.to_string().contains("\"plate\""), "{on}");
-    let across = CameraSpec { lens_radius_m: 0.1, ..narrow([0.45, 0.0, 2.0], [3.0, 0.0, 2.0]) };
+    let across = CameraSpec { lens_radius_m: 0.1, ..narrow([0.495, 0.0, 2.0], [3.0, 0.0, 2.0]) };
     assert!(View::new(&scene, &across, 1).unwrap_err().to_string().contains("lens"));
     assert!(View::new(&scene, &narrow([0.0, 0.0, 2.0], [0.0, 0.0, 0.0]), 1).is_ok(), "inside glass");
 }

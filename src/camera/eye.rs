@@ -10,6 +10,7 @@ use super::pinhole::EyeRay;
 use super::view::View;
 use crate::bsdf::value::Leg;
 use crate::bsdf::{Bsdf, Dielectric, EyeWeight, Incidence, Outcome};
+use crate::emitter::Emitter;
 use crate::estimate::density::{Density, Gathered};
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::sample::coordinates::{Chooser, Purpose};
@@ -151,10 +152,15 @@ impl<'a, const C: usize> EyePath<'a, C> {
             };
             density.gather(hit, channels(path.weight.weight()), value, &mut self.gathered);
         }
+        let scene = self.view.scene;
         if !self.looks.direct {
+            // The coordinates are used up all the same, so that what follows is the same path in every pass.
+            for emitter in scene.emitters.as_slice() {
+                place_on(emitter, chooser);
+            }
             return [0.0; 3];
         }
-        direct(self.view.scene, hit, wo, &path.at, chooser)
+        direct(scene, hit, wo, &path.at, chooser)
     }
 }
 
@@ -215,12 +221,8 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
     let sides = [from(Side::Front), from(Side::Back)];
     let mut sum = [0.0; 3];
     for (i, emitter) in scene.emitters.as_slice().iter().enumerate() {
-        let u = if emitter.direct_coordinates() == 0 {
-            [0.0; 2]
-        } else {
-            [chooser.uniform(Purpose::BeamPosition), chooser.uniform(Purpose::BeamPosition)]
-        };
-        let Some(light) = emitter.direct_light(hit.position, u) else { continue };
+        let place = place_on(emitter, chooser);
+        let Some(light) = emitter.direct_light(hit.position, place) else { continue };
         let wi = Leg::new(light.towards, hit.normal);
         let value = bsdf.value_between(hit.normal, wi, wo);
         if value == [0.0; 3] {
@@ -235,6 +237,15 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
         (0..3).for_each(|c| sum[c] += illuminance_lx * value[c] * colour[c]);
     }
     sum
+}
+
+/// Coordinates of a point of an emitter, where it has more than one.
+#[inline]
+fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
+    match emitter.direct_coordinates() {
+        0 => [0.0; 2],
+        _ => [chooser.uniform(Purpose::BeamPosition), chooser.uniform(Purpose::BeamPosition)],
+    }
 }
 
 /// Where an eye path goes on from anything but glass: (direction, whether through the surface); `None` where it ends.
