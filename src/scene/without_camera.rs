@@ -89,7 +89,9 @@ mod tests {
         let bare = format!("{BEFORE}{AFTER}");
         assert_eq!(without_camera(&bare), bare);
         assert_eq!(without_camera(&format!("{BEFORE}{CAMERA}{AFTER}")), bare);
-        assert_eq!(without_camera(&format!("{CAMERA}{bare}")), bare);
+        let headless = bare.trim_start_matches("# a scene\n");
+        assert_eq!(without_camera(&format!("{CAMERA}{headless}")), headless);
+        assert_eq!(without_camera(&format!("{CAMERA}{bare}")), headless, "a comment before the next header");
         assert_eq!(without_camera(&format!("{bare}\n{CAMERA}")), bare);
         assert_eq!(without_camera(&format!("{bare}\n  [ camera ]\nfov_deg = 4")), bare);
         assert_eq!(without_camera(&format!("\u{feff}{bare}\n{CAMERA}")), bare);
