@@ -9,15 +9,17 @@ use caustix::estimate::bandwidth::choose;
 use caustix::estimate::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
 use caustix::estimate::footprint::Footprints;
 use caustix::geometry::{
-    Geometry, Hit, Mesh, MeshParts, Paraboloid, Rectangle, Shape, Smoothing, Sphere, Surface, Whereabouts,
-    box_mesh,
+    Geometry, Hit, Mesh, MeshParts, Paraboloid, Rectangle, Shape, Smoothing, Sphere, Surface, SurfaceId,
+    Whereabouts, box_mesh,
 };
 use caustix::scene::camera::{Bandwidth, Kernel};
+use caustix::sequence::Points;
 use caustix::sequence::hash::mix64;
+use caustix::sequence::owen::OwenPoints;
 use caustix::tally::photon_map::record::{FRONT, pack};
 use caustix::tally::photon_map::{Frame, Photon, PhotonMap};
 use glam::DVec3;
-use support::quadrature::adaptive;
+use support::quadrature::Gauss;
 use support::statistics::{sidak, z_test};
 
 const KERNELS: [Kernel; 2] = [Kernel::Flat, Kernel::Epanechnikov];
@@ -104,10 +106,8 @@ fn over_rectangle(kernel: Kernel, [a, b, c, d]: [f64; 4]) -> f64 {
     edges.retain(|x| *x >= a.max(-1.0) && *x <= b.min(1.0));
     edges.extend([a.max(-1.0), b.min(1.0)]);
     edges.sort_by(f64::total_cmp);
-    edges
-        .windows(2)
-        .map(|w| adaptive(w[0].asin(), w[1].asin(), 1e-13, &|t: f64| slice(t.sin()) * t.cos()))
-        .sum()
+    let edges: Vec<f64> = edges.iter().map(|x| x.asin()).collect();
+    Gauss::new(60).over_panels(&edges, |t| slice(t.sin()) * t.cos())
 }
 
 #[test]
@@ -329,7 +329,9 @@ fn on_a_sphere_a_fixed_radius_is_unbiased_and_k_nearest_are_as_theory_has_it() {
         for (x, y, z) in
             [(1.0, 0.0, 0.0), (-1.0, 0.2, 0.1), (0.1, -1.0, 0.0), (0.3, 0.2, 1.0), (0.0, 0.3, -1.0)]
         {
-            let here = hit(&scene, DVec3::ZERO, DVec3::new(x, y, z));
+            let inside = Whereabouts::start([SurfaceId(0)]);
+            let to = DVec3::new(x, y, z).normalize();
+            let here = scene.nearest(DVec3::ZERO, to, &inside, &mut 0).unwrap();
             assert!(!here.front);
             let value = |bandwidth, kernel| {
                 let density = Density::new(&scene, &map, 1.0, choice(bandwidth, kernel, 1));
@@ -528,4 +530,105 @@ fn an_even_density_gets_the_widest_radius_and_an_edge_a_narrow_one() {
     // The choice does not depend on threads.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(7).build().unwrap();
     assert_eq!(pool.install(|| choose(&footprints, &striped, Kernel::Epanechnikov, 8, 1.0 / 16.0)), first);
+}
+
+/// A fold and a smooth hill on the floor, from quasi-random points of 8 replicates: half of the photons at x = 0.1 + 0.8 s^2, s even
+/// in [-1, 1], so of density 1 / (2 sqrt) inside and none outside; half even in y and spread in x as 1 + sin(2 pi x).
+fn fold_and_hill(frame: &Frame, n: u64, seed: u64) -> Vec<Photon<1>> {
+    let mut photons = Vec::new();
+    for replicate in 0..8 {
+        let points = OwenPoints::new(seed, replicate);
+        for i in 0..n / 8 {
+            let c = |k: u32| (points.coordinate(i, k) >> 11) as f64 / (1u64 << 53) as f64;
+            let (a, b) = (c(0), c(1));
+            let x = if a < 0.5 {
+                let s = 4.0 * a - 1.0;
+                0.1 + 0.8 * s * s
+            } else {
+                hill_quantile(2.0 * a - 1.0)
+            };
+            let at = DVec3::new(x, b, 0.0);
+            photons.push(photon(frame, at, u32::from(b > x), replicate));
+        }
+    }
+    photons
+}
+
+/// x with x + (1 - cos 2 pi x) / (2 pi) = u.
+fn hill_quantile(u: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..50 {
+        let x = 0.5 * (low + high);
+        if x + (1.0 - (TAU * x).cos()) / TAU < u { low = x } else { high = x }
+    }
+    0.5 * (low + high)
+}
+
+/// Share of the photons of [`fold_and_hill`] below x.
+fn fold_and_hill_below(x: f64) -> f64 {
+    let s = ((x - 0.1).max(0.0) / 0.8).min(1.0).sqrt();
+    let x = x.clamp(0.0, 1.0);
+    0.5 * s + 0.5 * (x + (1.0 - (TAU * x).cos()) / TAU)
+}
+
+#[test]
+fn the_bias_figure_covers_the_bias_at_a_fold() {
+    let scene = geometry(vec![floor()]);
+    let frame = frame_of(&scene);
+    let (pixels, width) = (100, 0.01);
+    for n in [1u64 << 16, 1 << 19, 1 << 22] {
+        let map = PhotonMap::build(fold_and_hill(&frame, n, 5), frame, 0.0);
+        for kernel in KERNELS {
+            let automatic = choice(Bandwidth::Automatic, kernel, 8);
+            let density = Density::new(&scene, &map, 1.0 / n as f64, automatic);
+            let chosen = *density.chosen().unwrap();
+            let (mut rows, wide) = (Vec::new(), choice(Bandwidth::Radius(2.0 * chosen.radius_m), kernel, 8));
+            let wide = Density::new(&scene, &map, 1.0 / n as f64, wide);
+            for i in 0..pixels {
+                for j in 0..10 {
+                    let left = width * f64::from(i);
+                    let truth = (fold_and_hill_below(left + width) - fold_and_hill_below(left)) / width;
+                    let (mut sums, mut twice) = (Gathered::new(8), Gathered::new(8));
+                    for k in 0..16 {
+                        let (dx, dy) = ((f64::from(k) + 0.5) / 16.0, u(k as u64, 3));
+                        let at = on_floor(&scene, left + width * dx, 0.1 * f64::from(j) + width * dy);
+                        density.gather(&at, [PI / 16.0], lambertian(true), &mut sums);
+                        wide.gather(&at, [PI / 16.0], lambertian(true), &mut twice);
+                    }
+                    let difference = (sums.second[0] - sums.value[0]).abs();
+                    rows.push((
+                        truth,
+                        sums.value[0],
+                        sums.standard_error().unwrap(),
+                        difference,
+                        (twice.value[0] - sums.value[0]).abs(),
+                    ));
+                }
+            }
+            let share = |f: &dyn Fn(&(f64, f64, f64, f64, f64)) -> bool| {
+                rows.iter().filter(|r| f(r)).count() as f64 / rows.len() as f64
+            };
+            let median = |f: &dyn Fn(&(f64, f64, f64, f64, f64)) -> f64| {
+                let mut v: Vec<f64> = rows.iter().map(f).collect();
+                v.sort_by(f64::total_cmp);
+                v[v.len() / 2]
+            };
+            println!(
+                "{n} {kernel:?} {chosen:?} median error {:.4} se {:.4} |d| sqrt2 {:.4} |d| 2 {:.4}",
+                median(&|r| (r.1 - r.0).abs() / r.0),
+                median(&|r| r.2 / r.0),
+                median(&|r| r.3 / r.1),
+                median(&|r| r.4 / r.1)
+            );
+            for beta in [0.5, 1.0, 1.5, 2.0, 2.41] {
+                println!(
+                    "  beta {beta}: sqrt2 covers {:.3}, +3se {:.3}; 2: covers {:.3}, +3se {:.3}",
+                    share(&|r| (r.1 - r.0).abs() <= beta * r.3),
+                    share(&|r| (r.1 - r.0).abs() <= beta * r.3 + 3.0 * r.2),
+                    share(&|r| (r.1 - r.0).abs() <= beta * r.4),
+                    share(&|r| (r.1 - r.0).abs() <= beta * r.4 + 3.0 * r.2)
+                );
+            }
+        }
+    }
 }
