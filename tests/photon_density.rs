@@ -85,6 +85,9 @@ fn mean_and_error(values: &[f64]) -> (f64, f64) {
 
 /// The kernel's integral over x in [a, b], y in [c, d] cut by its disc, by quadrature along x, closed along y.
 fn over_rectangle(kernel: Kernel, [a, b, c, d]: [f64; 4]) -> f64 {
+    if a >= 1.0 || b <= -1.0 {
+        return 0.0;
+    }
     let slice = |x: f64| {
         let half = (1.0 - x * x).max(0.0).sqrt();
         let (low, high) = (c.max(-half), d.min(half));
@@ -571,64 +574,105 @@ fn fold_and_hill_below(x: f64) -> f64 {
     0.5 * s + 0.5 * (x + (1.0 - (TAU * x).cos()) / TAU)
 }
 
-#[test]
-fn the_bias_figure_covers_the_bias_at_a_fold() {
+/// What the estimate makes of a strip of pixels: (truth, value, standard error, bias figure) of each.
+fn strip(n: u64, seed: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
     let scene = geometry(vec![floor()]);
     let frame = frame_of(&scene);
-    let (pixels, width) = (100, 0.01);
-    for n in [1u64 << 16, 1 << 19, 1 << 22] {
-        let map = PhotonMap::build(fold_and_hill(&frame, n, 5), frame, 0.0);
-        for kernel in KERNELS {
-            let automatic = choice(Bandwidth::Automatic, kernel, 8);
-            let density = Density::new(&scene, &map, 1.0 / n as f64, automatic);
-            let chosen = *density.chosen().unwrap();
-            let (mut rows, wide) = (Vec::new(), choice(Bandwidth::Radius(2.0 * chosen.radius_m), kernel, 8));
-            let wide = Density::new(&scene, &map, 1.0 / n as f64, wide);
-            for i in 0..pixels {
-                for j in 0..10 {
-                    let left = width * f64::from(i);
-                    let truth = (fold_and_hill_below(left + width) - fold_and_hill_below(left)) / width;
-                    let (mut sums, mut twice) = (Gathered::new(8), Gathered::new(8));
-                    for k in 0..16 {
-                        let (dx, dy) = ((f64::from(k) + 0.5) / 16.0, u(k as u64, 3));
-                        let at = on_floor(&scene, left + width * dx, 0.1 * f64::from(j) + width * dy);
-                        density.gather(&at, [PI / 16.0], lambertian(true), &mut sums);
-                        wide.gather(&at, [PI / 16.0], lambertian(true), &mut twice);
-                    }
-                    let difference = (sums.second[0] - sums.value[0]).abs();
-                    rows.push((
-                        truth,
-                        sums.value[0],
-                        sums.standard_error().unwrap(),
-                        difference,
-                        (twice.value[0] - sums.value[0]).abs(),
-                    ));
-                }
-            }
-            let share = |f: &dyn Fn(&(f64, f64, f64, f64, f64)) -> bool| {
-                rows.iter().filter(|r| f(r)).count() as f64 / rows.len() as f64
+    let width = 0.01;
+    let map = PhotonMap::build(fold_and_hill(&frame, n, seed), frame, 0.0);
+    let density = Density::new(&scene, &map, 1.0 / n as f64, choice(Bandwidth::Automatic, kernel, 8));
+    let chosen = density.chosen().unwrap();
+    println!("2^{} photons, {kernel:?}: {chosen:?}", n.ilog2());
+    let pixel = |i: u32, j: u32| {
+        let (left, low) = (width * f64::from(i), 0.1 * f64::from(j));
+        let truth = (fold_and_hill_below(left + width) - fold_and_hill_below(left)) / width;
+        let mut sums = Gathered::new(8);
+        for k in 0..16u32 {
+            let dx = (f64::from(k) + 0.5) / 16.0;
+            let at = on_floor(&scene, left + width * dx, low + width * u(u64::from(k), 3));
+            density.gather(&at, [PI / 16.0], lambertian(true), &mut sums);
+        }
+        [truth, sums.value[0], sums.standard_error().unwrap(), sums.bias()]
+    };
+    ((0..1000).map(|p| pixel(p / 10, p % 10)).collect(), chosen.radius_m)
+}
+
+#[test]
+fn the_bias_figure_covers_the_bias_at_a_fold_and_shrinks_with_photons() {
+    for kernel in KERNELS {
+        let mut figures = Vec::new();
+        for n in [1u64 << 16, 1 << 19, 1 << 22] {
+            let (pixels, radius) = strip(n, 5, kernel);
+            let share =
+                |f: &dyn Fn(&[f64; 4]) -> bool| pixels.iter().filter(|r| f(r)).count() as f64 / 1000.0;
+            let median = |f: &dyn Fn(&[f64; 4]) -> f64| {
+                let mut values: Vec<f64> = pixels.iter().map(f).collect();
+                values.sort_by(f64::total_cmp);
+                values[500]
             };
-            let median = |f: &dyn Fn(&(f64, f64, f64, f64, f64)) -> f64| {
-                let mut v: Vec<f64> = rows.iter().map(f).collect();
-                v.sort_by(f64::total_cmp);
-                v[v.len() / 2]
-            };
+            let covered = share(&|[truth, value, _, bias]| (value - truth).abs() <= *bias);
+            let agree = share(&|[truth, value, error, bias]| (value - truth).abs() <= bias + 3.0 * error);
+            let figure = median(&|[_, value, _, bias]| bias / value);
             println!(
-                "{n} {kernel:?} {chosen:?} median error {:.4} se {:.4} |d| sqrt2 {:.4} |d| 2 {:.4}",
-                median(&|r| (r.1 - r.0).abs() / r.0),
-                median(&|r| r.2 / r.0),
-                median(&|r| r.3 / r.1),
-                median(&|r| r.4 / r.1)
+                "  radius {radius:.4} m: median error {:.4}, standard error {:.4}, bias figure {figure:.4}; it alone \
+                 covers {covered:.3}, with 3 standard errors {agree:.3}",
+                median(&|[truth, value, ..]| (value - truth).abs() / truth),
+                median(&|[truth, _, error, _]| error / truth),
             );
-            for beta in [0.5, 1.0, 1.5, 2.0, 2.41] {
-                println!(
-                    "  beta {beta}: sqrt2 covers {:.3}, +3se {:.3}; 2: covers {:.3}, +3se {:.3}",
-                    share(&|r| (r.1 - r.0).abs() <= beta * r.3),
-                    share(&|r| (r.1 - r.0).abs() <= beta * r.3 + 3.0 * r.2),
-                    share(&|r| (r.1 - r.0).abs() <= beta * r.4),
-                    share(&|r| (r.1 - r.0).abs() <= beta * r.4 + 3.0 * r.2)
-                );
+            assert!(agree >= 0.95, "{n} {kernel:?}");
+            if n == 1 << 22 {
+                assert!(covered >= 0.68 && figure < 0.02, "{kernel:?}: {covered} {figure}");
             }
+            figures.push(figure);
+        }
+        assert!(figures[1] < 0.6 * figures[0] && figures[2] < 0.6 * figures[1], "{figures:?}");
+    }
+}
+
+#[test]
+fn of_k_nearest_quasi_random_points_the_density_is_off_by_less_than_half_in_k() {
+    let scene = geometry(vec![floor()]);
+    let frame = frame_of(&scene);
+    for replicates in [1u32, 8] {
+        for k in [5u32, 10, 20, 50, 100] {
+            let mut values = Vec::new();
+            for seed in 0..24 {
+                let mut photons = Vec::new();
+                let n = 1u64 << 14;
+                for replicate in 0..replicates {
+                    let points = OwenPoints::new(seed, replicate);
+                    for i in 0..n / u64::from(replicates) {
+                        let c = |d: u32| (points.coordinate(i, d) >> 11) as f64 / (1u64 << 53) as f64;
+                        photons.push(photon(
+                            &frame,
+                            DVec3::new(c(0), c(1), 0.0),
+                            u32::from(c(1) > c(0)),
+                            replicate,
+                        ));
+                    }
+                }
+                let map = PhotonMap::build(photons, frame, 0.02);
+                let density = Density::new(&scene, &map, 1.0, choice(Bandwidth::Nearest(k), Kernel::Flat, 8));
+                let mean = (0..400u64)
+                    .map(|i| {
+                        let at = on_floor(&scene, 0.1 + 0.8 * u(i, 60 + seed), 0.1 + 0.8 * u(i, 90 + seed));
+                        density_at(&density, &at, 8).0 / n as f64
+                    })
+                    .sum::<f64>()
+                    / 400.0;
+                values.push(mean);
+            }
+            let (mean, error) = mean_and_error(&values);
+            let kf = f64::from(k);
+            println!(
+                "{replicates} replicate(s), k = {k}: {mean:.4} +- {error:.4}; (k-1)/k = {:.4}, (k-1)/(k-1/2) = {:.4}",
+                (kf - 1.0) / kf,
+                (kf - 1.0) / (kf - 0.5)
+            );
+            // Independent points: 1. A point set whose count in a disc is always the nearest integer: (k-1)/(k-1/2). Nets
+            // lie between; several of them over one another crowd a little at distances below those in one. All of it
+            // is within what the bias figure allows for.
+            assert!((mean - 1.0).abs() < 0.5 / kf + 3.5 * error, "{replicates} {k}");
         }
     }
 }

@@ -33,6 +33,9 @@ const MOST_NEIGHBOURS: usize = 1024;
 /// Fewest neighbours in the mean that a radius may have.
 const LEAST_NEIGHBOURS: f64 = 8.0;
 
+/// Photons below which none of this is told from them.
+const FEWEST: usize = 64;
+
 /// Neighbours from which a point's own density is told.
 const ENOUGH: f64 = 48.0;
 
@@ -146,6 +149,9 @@ impl Point {
 impl Ladder {
     /// About photons of this map; `None` where there are too few to have neighbours.
     fn new<const C: usize>(footprints: &Footprints<'_>, map: &PhotonMap<C>, replicates: u32) -> Option<Self> {
+        if map.photons().len() < FEWEST {
+            return None;
+        }
         // One more: the photon itself is among them.
         let k = MOST_NEIGHBOURS.min(map.photons().len() / 2) + 1;
         let mut found = Vec::new();
