@@ -30,6 +30,12 @@ const RUNGS: usize = 21;
 /// beyond it a picture takes too long.
 const MOST_NEIGHBOURS: usize = 1024;
 
+/// Fewest neighbours in the mean that a radius may have.
+const LEAST_NEIGHBOURS: f64 = 8.0;
+
+/// Photons below which none of this is told from them.
+const FEWEST: usize = 64;
+
 /// Neighbours from which a point's own density is told.
 const ENOUGH: f64 = 48.0;
 
@@ -70,12 +76,14 @@ pub fn choose<const C: usize>(
     let places = places(map.photons().len(), POINTS);
     let points: Vec<Point> =
         places.into_par_iter().filter_map(|i| ladder.point(footprints, map, kernel, i)).collect();
-    let cost = |rung: usize| -> f64 {
-        points.iter().map(|p| p.squared_error(rung, fraction)).sum::<f64>() / points.len().max(1) as f64
-    };
-    let costs: Vec<f64> = (0..RUNGS - SECOND_STEPS).map(cost).collect();
-    // Of equals the widest.
-    let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]).then(b.cmp(&a))).unwrap_or(0);
+    let count = |rung: usize| points.iter().map(|p| p.count[rung]).sum::<f64>() / points.len().max(1) as f64;
+    let candidates = RUNGS - SECOND_STEPS;
+    let costs = costs(&points, fraction);
+    // Of equals the widest; never so narrow that hardly any photons are left.
+    let best = (0..candidates)
+        .filter(|&i| count(i) * fraction.recip() >= LEAST_NEIGHBOURS)
+        .min_by(|&a, &b| costs[a].total_cmp(&costs[b]).then(b.cmp(&a)))
+        .unwrap_or(candidates - 1);
     let mean = |of: &dyn Fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len().max(1) as f64;
     let mut bias: Vec<f64> = points.iter().map(|p| p.relative_bias(best)).collect();
     bias.sort_by(f64::total_cmp);
@@ -83,8 +91,25 @@ pub fn choose<const C: usize>(
         radius_m: ladder.radii_m[best],
         mean_neighbours: mean(&|p| p.count[best]),
         median_bias: bias.get(bias.len() / 2).copied().unwrap_or(f64::NAN),
-        relative_error: mean(&|p| fraction * p.variance[best] / (p.density * p.density)).sqrt(),
+        relative_error: mean(&|p| fraction * p.relative_variance(best)).sqrt(),
     }
+}
+
+/// Mean squared relative error of every rung.
+///
+/// What is finer than both bandwidths neither of them sees: the bias of a radius is taken to be no less than what narrower ones
+/// show, as far as that is more than their noise.
+fn costs(points: &[Point], fraction: f64) -> Vec<f64> {
+    let n = points.len().max(1) as f64;
+    let mut proven = 0.0f64;
+    let cost = |rung: usize| {
+        let variance = points.iter().map(|p| p.relative_variance(rung)).sum::<f64>() / n;
+        let (bias2, spread) = moments(points.iter().map(|p| p.relative_bias2(rung)));
+        let own = bias2.max(proven).max(0.0);
+        proven = proven.max(bias2 - 3.0 * (spread / n).sqrt());
+        fraction * variance + own
+    };
+    (0..RUNGS - SECOND_STEPS).map(cost).collect()
 }
 
 /// Radii from narrow to wide, each 2^(1/4) times the last.
@@ -106,10 +131,14 @@ struct Point {
 }
 
 impl Point {
-    fn squared_error(&self, rung: usize, fraction: f64) -> f64 {
-        let bias2 = self.difference[rung] * self.difference[rung] - self.noise[rung];
-        let bias2 = bias2 * (BIAS_PER_DIFFERENCE * BIAS_PER_DIFFERENCE);
-        (fraction * self.variance[rung] + bias2) / (self.density * self.density)
+    fn relative_variance(&self, rung: usize) -> f64 {
+        self.variance[rung] / (self.density * self.density)
+    }
+
+    /// Square of the bias, less what noise adds to it.
+    fn relative_bias2(&self, rung: usize) -> f64 {
+        let difference2 = self.difference[rung] * self.difference[rung] - self.noise[rung];
+        difference2 * (BIAS_PER_DIFFERENCE * BIAS_PER_DIFFERENCE) / (self.density * self.density)
     }
 
     fn relative_bias(&self, rung: usize) -> f64 {
@@ -120,7 +149,11 @@ impl Point {
 impl Ladder {
     /// About photons of this map; `None` where there are too few to have neighbours.
     fn new<const C: usize>(footprints: &Footprints<'_>, map: &PhotonMap<C>, replicates: u32) -> Option<Self> {
-        let k = MOST_NEIGHBOURS.min(map.photons().len() / 2);
+        if map.photons().len() < FEWEST {
+            return None;
+        }
+        // One more: the photon itself is among them.
+        let k = MOST_NEIGHBOURS.min(map.photons().len() / 2) + 1;
         let mut found = Vec::new();
         let mut reach: Vec<f64> = Vec::new();
         for place in places(map.photons().len(), 63) {

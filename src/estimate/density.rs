@@ -40,7 +40,8 @@ pub struct Gathered<const C: usize> {
     pub by_replicate: Vec<f64>,
     /// Standard error (Y) owed to places with fewer than ten photons, whose spread says nothing: that of (photons + 1).
     pub sparse: f64,
-    /// Bias (Y) that no bandwidth tells: that of the factor k - 1 of k nearest under points that are not independent.
+    /// Bias (Y) that no bandwidth tells: that of the factor k - 1 of k nearest under points that are not independent, at most
+    /// that of k - 1/2.
     pub nearest_bias: f64,
     /// Kernel heights (1/m2) at both bandwidths by replicate, of the gather in hand.
     heights: Vec<[f64; 2]>,
@@ -301,7 +302,7 @@ impl<'m, const C: usize> Density<'m, C> {
             hits += u64::from(t1 < 1.0);
             self.add_two(photon, [t1, t2], heights, weight, value_of, into);
         }
-        into.nearest_bias += (luminance(&into.value) - before).abs() / k.max(1) as f64;
+        into.nearest_bias += (luminance(&into.value) - before).abs() / (2.0 * k as f64 - 1.0).max(1.0);
         (hits, heights[0])
     }
 

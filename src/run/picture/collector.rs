@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::scene::camera::CameraSpec;
 use crate::tally::Receivers;
 use crate::tally::photon_map::sink::Kept;
-use crate::tally::photon_map::{Channels, Photon, PhotonStore, SavedMap};
+use crate::tally::photon_map::{Channels, Photon, PhotonMap, PhotonStore, SavedMap};
 use crate::transport::parallel::Traced;
 
 use super::super::plan::Plan;
@@ -270,21 +270,28 @@ impl<'a, const C: usize> Collector<'a, C> {
         let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
         let part = part * photon_lm / exact_lm;
         let frame = self.store.frame();
-        let photons = std::mem::take(&mut self.held).map(joined);
-        let mut maps = self.eye.maps(photons, frame, self.bandwidths.as_ref());
-        let bandwidths = match &self.bandwidths {
-            Some(bandwidths) => *bandwidths,
+        let mut maps = std::mem::take(&mut self.held).map(|blocks| {
+            let photons = joined(blocks);
+            let density = usize::from(photons.first().is_some_and(Photon::is_scattered));
+            let radius_m = self.eye.radius_to_sort_for_m(self.bandwidths.as_ref(), density);
+            PhotonMap::build(photons, frame, radius_m)
+        });
+        let bandwidths = match self.bandwidths {
+            Some(bandwidths) => bandwidths,
             None => {
-                let bandwidths = self.eye.choose(&maps, part);
-                maps = bandwidths.sorted(maps);
-                *self.bandwidths.insert(bandwidths)
+                let chosen = self.eye.choose(&maps, part);
+                let [caustic, diffuse] = maps;
+                let radius_m = |density| self.eye.radius_to_sort_for_m(Some(&chosen), density);
+                maps = [caustic.rebuilt(radius_m(0)), diffuse.rebuilt(radius_m(1))];
+                *self.bandwidths.insert(chosen)
             }
         };
         let of = std::mem::replace(&mut self.held_of, 0..0);
-        let of = if of.is_empty() && self.open { self.replicates - 1..self.replicates } else { of };
         // What an interrupt left of a replicate closes it.
         let finishes = self.whole || last;
-        self.eye.add(&Seen { maps: &maps, photon_lm, bandwidths, replicates: of, finishes, last })?;
+        let of = if of.is_empty() && self.open { self.replicates - 1..self.replicates } else { of };
+        let seen = Seen { maps: &maps, photon_lm, bandwidths, part, replicates: of, finishes, last };
+        self.eye.add(&seen)?;
         self.open = !finishes;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();

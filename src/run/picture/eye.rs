@@ -1,24 +1,20 @@
 //! What a run asks of the camera: to add what it sees of a pass, and to make a film of the sums.
 //!
-//! The partial sums over replicates, from which the standard error comes, must be those of whole replicates. Passes come
-//! in the order of the replicates and may end in the middle of one, so its partial sum stays open until photons of a later
-//! one are seen.
+//! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error comes from whole
+//! ones.
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use crate::camera::film::Sums;
-use crate::camera::render::{Pass, render};
-use crate::camera::{Film, View};
+use crate::camera::{Film, Pass, Sums, View, render};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::estimate::bandwidth;
 use crate::estimate::density::{Choice, Density};
 use crate::estimate::footprint::Footprints;
 use crate::scene::Scene;
 use crate::scene::camera::{Bandwidth, CameraSpec};
-use crate::tally::photon_map::{Frame, Photon, PhotonMap};
+use crate::tally::photon_map::PhotonMap;
 
 use super::super::plan::Plan;
 use super::Watch;
@@ -35,23 +31,6 @@ impl Bandwidths {
     pub(super) fn chosen(&self) -> [Chosen; 2] {
         self.chosen
     }
-
-    /// The maps sorted for these bandwidths.
-    pub(super) fn sorted<const C: usize>(&self, maps: [PhotonMap<C>; 2]) -> [PhotonMap<C>; 2] {
-        let mut kinds = 0..;
-        maps.map(|map| match self.search_radius_m(kinds.next().unwrap_or(0)) {
-            radius if radius > 0.0 && radius != map.built_for_m() => map.rebuilt(radius),
-            _ => map,
-        })
-    }
-
-    /// The radius for which a map of one kind is to be sorted, m; 0 where the map may guess.
-    fn search_radius_m(&self, kind: usize) -> f64 {
-        match self.of[kind] {
-            Bandwidth::Radius(radius) | Bandwidth::Progressive(radius) => radius,
-            Bandwidth::Nearest(_) | Bandwidth::Automatic => 0.0,
-        }
-    }
 }
 
 /// What the camera sees in a pass.
@@ -61,7 +40,9 @@ pub(super) struct Seen<'m, const C: usize> {
     /// Flux of one of them, lm: that of the whole run.
     pub(super) photon_lm: f64,
     pub(super) bandwidths: Bandwidths,
-    /// The replicates they are of; the first may have had photons in the pass before.
+    /// Which part of the run's photons this is.
+    pub(super) part: f64,
+    /// The replicates they are of: whole ones, or a part of one.
     pub(super) replicates: Range<u32>,
     /// Whether these replicates end with this pass.
     pub(super) finishes: bool,
@@ -69,108 +50,117 @@ pub(super) struct Seen<'m, const C: usize> {
     pub(super) last: bool,
 }
 
-/// The camera at work.
+/// The camera at work. What was traced when an interrupt came is seen; one that comes while the camera looks ends it.
 pub(super) struct Eye<'a, const C: usize> {
     view: View<'a>,
-    footprints: Arc<Footprints<'a>>,
+    spec: &'a CameraSpec,
     watch: Watch<'a>,
-    replicates: u32,
-    sums: Sums<C>,
     killed: u64,
+    footprints: Arc<Footprints<'a>>,
+    sums: Sums<C>,
+    replicates: u32,
 }
 
 impl<'a, const C: usize> Eye<'a, C> {
+    /// The camera of a scene.
+    ///
+    /// # Errors
+    /// A camera that cannot see; a picture that takes too much memory.
     pub(super) fn new(scene: &'a Scene, spec: &'a CameraSpec, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
         Ok(Self {
             view: View::new(scene, spec, plan.seed)?,
-            footprints: Arc::new(Footprints::new(&scene.geometry)),
+            spec,
             watch,
-            replicates: plan.replicates,
-            sums: Sums::new(spec.pixels)?,
             killed: 0,
+            footprints: Arc::new(Footprints::new(&scene.geometry)),
+            sums: Sums::new(spec.pixels)?,
+            replicates: plan.replicates,
         })
     }
 
-    /// The bandwidths of a run, from the photons of its first pass: `part` of all.
+    /// Bandwidths from the photons of the first pass, `part` of all.
     pub(super) fn choose(&self, maps: &[PhotonMap<C>; 2], part: f64) -> Bandwidths {
-        let CameraSpec { bandwidth, kernel, .. } = *self.view.spec();
-        let pairs = [0, 1].map(|k| match bandwidth {
-            Bandwidth::Automatic => {
-                let found = bandwidth::choose(&self.footprints, &maps[k], kernel, self.replicates, part);
-                let neighbours = Some(found.mean_neighbours).filter(|n| n.is_finite());
-                (Bandwidth::Radius(found.radius_m), Chosen { radius_m: Some(found.radius_m), neighbours })
+        let mut of = [self.spec.bandwidth; 2];
+        let mut chosen = [Chosen { radius_m: None, neighbours: None }; 2];
+        for k in 0..2 {
+            match self.spec.bandwidth {
+                // Of no photons there is nothing to choose.
+                Bandwidth::Automatic if maps[k].photons().is_empty() => {}
+                Bandwidth::Automatic => {
+                    let kernel = self.spec.kernel;
+                    let found = bandwidth::choose(&self.footprints, &maps[k], kernel, self.replicates, part);
+                    of[k] = Bandwidth::Radius(found.radius_m);
+                    let neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
+                    chosen[k] = Chosen { radius_m: Some(found.radius_m), neighbours };
+                }
+                Bandwidth::Radius(radius_m) | Bandwidth::Progressive(radius_m) => {
+                    chosen[k].radius_m = Some(radius_m);
+                }
+                Bandwidth::Nearest(n) => chosen[k].neighbours = Some(f64::from(n)),
             }
-            Bandwidth::Radius(radius) | Bandwidth::Progressive(radius) => {
-                (bandwidth, Chosen { radius_m: Some(radius), neighbours: None })
-            }
-            Bandwidth::Nearest(k) => (bandwidth, Chosen { radius_m: None, neighbours: Some(f64::from(k)) }),
-        });
-        Bandwidths { of: pairs.map(|p| p.0), chosen: pairs.map(|p| p.1) }
+        }
+        Bandwidths { of, chosen }
     }
 
-    /// Maps of photons of either kind, sorted for the bandwidths if these are known.
-    pub(super) fn maps(
-        &self,
-        photons: [Vec<Photon<C>>; 2],
-        frame: Frame,
-        known: Option<&Bandwidths>,
-    ) -> [PhotonMap<C>; 2] {
-        let asked = Bandwidths { of: [self.view.spec().bandwidth; 2], chosen: [Chosen::default(); 2] };
-        let bandwidths = known.unwrap_or(&asked);
-        let mut kinds = 0..;
-        photons.map(|photons| {
-            let radius_m = bandwidths.search_radius_m(kinds.next().unwrap_or(0));
-            PhotonMap::build(photons, frame, radius_m)
-        })
+    /// A map of photons, sorted for the bandwidth if that is known: `density` 0 or 1.
+    pub(super) fn radius_to_sort_for_m(&self, chosen: Option<&Bandwidths>, density: usize) -> f64 {
+        match chosen.map_or(self.spec.bandwidth, |b| b.of[density]) {
+            Bandwidth::Radius(radius_m) | Bandwidth::Progressive(radius_m) => radius_m,
+            // For a guess from the number of photons.
+            Bandwidth::Automatic | Bandwidth::Nearest(_) => 0.0,
+        }
     }
 
-    /// Adds what is seen of a pass's photons.
+    /// Adds what is seen in a pass.
     pub(super) fn add(&mut self, seen: &Seen<'_, C>) -> Result<()> {
-        let densities = [0, 1].map(|k| {
-            let choice = Choice {
-                bandwidth: seen.bandwidths.of[k],
-                kernel: self.view.spec().kernel,
-                replicates: self.replicates,
+        let density = |k: usize| {
+            let bandwidth = match seen.bandwidths.of[k] {
+                // The neighbours of a pass are a part of those of the run; two are the fewest that have a density.
+                Bandwidth::Nearest(n) => Bandwidth::Nearest(((f64::from(n) * seen.part + 0.5) as u32).max(2)),
+                other => other,
             };
+            let choice = Choice { bandwidth, kernel: self.spec.kernel, replicates: self.replicates };
             Density::on(Arc::clone(&self.footprints), &seen.maps[k], seen.photon_lm, choice)
-        });
-        let replicates = seen.replicates.clone();
-        self.render(&Pass {
+        };
+        let with_photons = |k: &usize| !seen.maps[*k].photons().is_empty();
+        let densities: Vec<Density<'_, C>> = (0..2).filter(with_photons).map(density).collect();
+        let pass = Pass {
             densities: &densities,
-            replicates,
+            replicates: seen.replicates.clone(),
             finishes: seen.finishes,
             emission: seen.last,
             direct: seen.last,
-        })
-    }
-
-    /// A photon turned out to carry another flux than passes so far took it for.
-    pub(super) fn scale(&mut self, factor: f64) {
-        self.sums.scale(factor);
+        };
+        self.look(&pass)
     }
 
     /// Adds emitters and background as seen directly, by mirrors and through glass, without light on surfaces.
     pub(super) fn add_emitters(&mut self) -> Result<()> {
-        self.render(&Pass::emission())
+        self.look(&Pass::emission())
     }
 
-    fn render(&mut self, pass: &Pass<'_, C>) -> Result<()> {
-        let [columns, rows] = self.view.spec().pixels.map(f64::from);
+    /// Takes all photons so far for this many times their flux.
+    pub(super) fn scale(&mut self, factor: f64) {
+        self.sums.scale(factor);
+    }
+
+    fn look(&mut self, pass: &Pass<'_, C>) -> Result<()> {
+        let [columns, rows] = self.sums.pixels().map(u64::from);
         let done = AtomicU64::new(0);
-        let progress = |pixels: u64| {
-            let done = done.fetch_add(pixels, Relaxed) + pixels;
-            (self.watch.camera)(done as f64 / (columns * rows));
+        let tell = |pixels: u64| {
+            let before = done.fetch_add(pixels, Ordering::Relaxed);
+            (self.watch.camera)((before + pixels) as f64 / (columns * rows) as f64);
         };
-        let rendered = render(&self.view, pass, &mut self.sums, self.watch.interrupt, &progress)?;
+        let never = AtomicBool::new(false);
+        let was_interrupted = self.watch.interrupt.load(Ordering::Relaxed);
+        let interrupt = if was_interrupted { &never } else { self.watch.interrupt };
+        let rendered = render(&self.view, pass, &mut self.sums, interrupt, &tell)?;
         self.killed += rendered.killed;
-        if !rendered.complete {
-            return Err(Diagnostic::new(
-                Kind::Interrupted,
-                "an interrupt before the picture was finished",
-                "all pixels: a part of them is no picture",
-            ));
+        if rendered.complete {
+            return Ok(());
         }
-        Ok(())
+        let required = "all pixels: a part of them is no picture";
+        Err(Diagnostic::new(Kind::Interrupted, "an interrupt before the picture was finished", required))
     }
 
     /// The film, and the number of eye paths that did not end by themselves.

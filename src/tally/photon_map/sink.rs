@@ -33,12 +33,7 @@ impl Channels<3> for Rgb {
 
 /// Which surfaces of a scene scatter: those where photons are kept, and where the eye's path ends.
 pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
-    let scatters = |bsdf: &Bsdf| match bsdf {
-        Bsdf::Lambertian { reflectance } => reflectance.luminous() > 0.0,
-        Bsdf::Tabulated(_) => true,
-        Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => false,
-    };
-    scene.bsdfs().iter().map(scatters).collect()
+    scene.bsdfs().iter().map(Bsdf::scatters).collect()
 }
 
 /// Photons of one block: a handle gives them to the store together, so that what it holds is never copied to grow.
