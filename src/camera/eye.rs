@@ -4,6 +4,8 @@
 //! scattering surface by shadow rays what comes straight from emitters, L D S* E; and from the photons there what had at
 //! least one event before, L (S|D)+ D S* E. Each once.
 
+use std::f64::consts::FRAC_1_PI;
+
 use glam::DVec3;
 
 use super::pinhole::EyeRay;
@@ -147,6 +149,13 @@ impl<'a, const C: usize> EyePath<'a, C> {
         let bsdf = self.view.scene.bsdf(hit.surface);
         let wo = Leg { direction: -path.direction, front: hit.front };
         for density in self.looks.densities {
+            if let Bsdf::Lambertian { reflectance } = bsdf {
+                let value = reflectance.by_channel().map(|r| r * FRAC_1_PI);
+                let weight = path.weight.weight();
+                let weight = std::array::from_fn(|c| weight[c] * value[c]);
+                density.gather_evenly(hit, channels(weight), &mut self.gathered);
+                continue;
+            }
             let value = |travel: DVec3, front: bool| {
                 channels(bsdf.value_between(hit.normal, Leg { direction: -travel, front }, wo))
             };

@@ -47,7 +47,25 @@ pub struct Gathered<const C: usize> {
     heights: Vec<[f64; 2]>,
     /// Neighbours found, of the gather in hand.
     found: Vec<(f64, u32)>,
+    /// What was gathered evenly since the last [`Self::clear`]: the first so many are in use.
+    places: Vec<Place<C>>,
+    places_used: usize,
 }
+
+/// Where light was gathered evenly, and what was found for a weight of 1.
+#[derive(Debug, Clone, PartialEq)]
+struct Place<const C: usize> {
+    density: usize,
+    at: Hit,
+    found: Gathered<C>,
+}
+
+/// How far, in radii, a place may be from one where light was gathered evenly to take the same: its kernels are the same but for a
+/// 16th of their radius.
+const SAME_PLACE: f64 = 1.0 / 16.0;
+
+/// Places of one pixel that are remembered.
+const MOST_PLACES: usize = 8;
 
 impl<const C: usize> Gathered<C> {
     /// Nothing, of this many replicates.
@@ -60,6 +78,8 @@ impl<const C: usize> Gathered<C> {
             nearest_bias: 0.0,
             heights: Vec::new(),
             found: Vec::new(),
+            places: Vec::new(),
+            places_used: 0,
         }
     }
 
@@ -70,6 +90,23 @@ impl<const C: usize> Gathered<C> {
         self.by_replicate.fill(0.0);
         self.sparse = 0.0;
         self.nearest_bias = 0.0;
+        self.places_used = 0;
+    }
+
+    /// Adds what was found for a weight of 1, times `weight`. The parts of the replicates are those of the luminance found.
+    fn add_weighted(&mut self, found: &Self, weight: [f64; C]) {
+        let weighted: [f64; C] = std::array::from_fn(|c| weight[c] * found.value[c]);
+        let y = luminance(&found.value);
+        let of_luminance = if y > 0.0 { luminance(&weighted) / y } else { 0.0 };
+        for c in 0..C {
+            self.value[c] += weighted[c];
+            self.second[c] += weight[c] * found.second[c];
+        }
+        for (sum, part) in self.by_replicate.iter_mut().zip(&found.by_replicate) {
+            *sum += of_luminance * part;
+        }
+        self.sparse += luminance(&weight).abs() * found.sparse;
+        self.nearest_bias += of_luminance * found.nearest_bias;
     }
 
     /// Estimated size of the bias of `value`'s luminance, cd/m2: [`BIAS_PER_DIFFERENCE`] times what the second bandwidth
@@ -227,6 +264,41 @@ impl<'m, const C: usize> Density<'m, C> {
         }
         into.heights = heights;
         into.found = found;
+    }
+
+    /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen and 0 for other, times
+    /// `weight`. A pixel's samples lie close together against a wide radius: what was gathered for one, since `into` was last
+    /// cleared, serves those within a 16th of the radius on the same side of the same surface.
+    pub fn gather_evenly(&self, at: &Hit, weight: [f64; C], into: &mut Gathered<C>) {
+        let of_side = |_, front: bool| [if front == at.front { 1.0 } else { 0.0 }; C];
+        let Reach::Radii(radii) = &self.reach else { return self.gather(at, weight, of_side, into) };
+        let near_m = SAME_PLACE * radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let density = std::ptr::from_ref(self.map).addr();
+        let same = |place: &Place<C>| {
+            let there = &place.at;
+            place.density == density
+                && (there.surface, there.front) == (at.surface, at.front)
+                && there.normal == at.normal
+                && there.position.distance_squared(at.position) <= near_m * near_m
+        };
+        let mut places = std::mem::take(&mut into.places);
+        let used = into.places_used;
+        match places[..used].iter().find(|place| same(place)) {
+            Some(place) => into.add_weighted(&place.found, weight),
+            None if used == MOST_PLACES => self.gather(at, weight, of_side, into),
+            None => {
+                if places.len() == used {
+                    places.push(Place { density, at: *at, found: Gathered::new(into.by_replicate.len()) });
+                }
+                let place = &mut places[used];
+                (place.density, place.at) = (density, *at);
+                place.found.clear();
+                self.gather(at, [1.0; C], of_side, &mut place.found);
+                into.add_weighted(&place.found, weight);
+                into.places_used = used + 1;
+            }
+        }
+        into.places = places;
     }
 
     /// 1 / (pi r^2) over what of the kernel lies on the surface, 1/m2, for two radii.
