@@ -335,9 +335,9 @@ impl<'m, const C: usize> Density<'m, C> {
             std::array::from_fn(|c| weight[c] * f[c] * f64::from(photon.weight[c]) * self.photon_lm);
         let at = |i: usize| if t[i] < 1.0 { heights[i] * self.kernel.shape(t[i]) } else { 0.0 };
         let [first, second] = [at(0), at(1)];
-        for c in 0..C {
-            into.value[c] += brought[c] * first;
-            into.second[c] += brought[c] * second;
+        for (c, l) in brought.iter().enumerate() {
+            into.value[c] += l * first;
+            into.second[c] += l * second;
         }
         if let Some(sum) = into.by_replicate.get_mut(photon.replicate()) {
             *sum += luminance(&brought) * first;
