@@ -31,8 +31,11 @@ fn place(i: u64, size: f64) -> DVec3 {
 }
 
 fn photons<const C: usize>(n: u64, frame: &Frame, at: impl Fn(u64) -> DVec3) -> Vec<Photon<C>> {
-    let flags =
-        |i: u64| (i % 8) as u32 | if i % 3 == 0 { FRONT } else { 0 } | if i % 5 == 0 { SCATTERED } else { 0 };
+    let flags = |i: u64| {
+        (i % 8) as u32
+            | if i.is_multiple_of(3) { FRONT } else { 0 }
+            | if i.is_multiple_of(5) { SCATTERED } else { 0 }
+    };
     let photon = |i: u64| Photon {
         cell: frame.cell(at(i)),
         direction: pack(direction(i)),
@@ -169,6 +172,9 @@ fn maps_of_no_photon_of_one_and_of_many_in_one_place() {
     let flat = Frame::new(middle, middle);
     let map = PhotonMap::build(photons::<1>(10, &flat, |_| middle), flat, 0.1);
     assert_eq!(by_searching(&map, middle, 1e-3).len(), 10);
+    map.nearest(middle, 50, 0.0, |_| true, &mut found);
+    assert_eq!(found.len(), 10);
+    let map = PhotonMap::build(photons::<1>(10, &flat, |_| middle), flat, 0.0);
     map.nearest(middle, 50, 0.0, |_| true, &mut found);
     assert_eq!(found.len(), 10);
 }

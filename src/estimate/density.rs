@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit};
-use crate::scene::camera::{Bandwidth, CameraSpec, Kernel};
+use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS, Kernel};
 use crate::tally::photon_map::{Photon, PhotonMap};
 use crate::units::LUMINANCE_OF_RGB;
 
@@ -45,6 +45,8 @@ pub struct Gathered<const C: usize> {
     pub nearest_bias: f64,
     /// Kernel heights (1/m2) at both bandwidths by replicate, of the gather in hand.
     heights: Vec<[f64; 2]>,
+    /// Radius of the last gather, m.
+    reach_m: f64,
     /// Neighbours found, of the gather in hand.
     found: Vec<(f64, u32)>,
     /// What was gathered evenly since the last [`Self::clear`]: the first so many are in use.
@@ -64,6 +66,9 @@ struct Place<const C: usize> {
 /// 16th of their radius.
 const SAME_PLACE: f64 = 1.0 / 16.0;
 
+/// Radius of the coarse map in radii of the fine one.
+const COARSE: f64 = 16.0;
+
 /// Places of one pixel that are remembered.
 const MOST_PLACES: usize = 8;
 
@@ -77,6 +82,7 @@ impl<const C: usize> Gathered<C> {
             sparse: 0.0,
             nearest_bias: 0.0,
             heights: Vec::new(),
+            reach_m: 0.0,
             found: Vec::new(),
             places: Vec::new(),
             places_used: 0,
@@ -162,6 +168,8 @@ impl Choice {
 enum Reach {
     /// All within this radius (m) by replicate; one entry where it is the same for all.
     Radii(Vec<f64>),
+    /// All within the radius (m), but this many nearest at least.
+    AtLeast(f64, usize),
     /// This many nearest; and a radius (m) to begin the search with.
     Nearest(usize, f64),
 }
@@ -171,6 +179,8 @@ enum Reach {
 pub struct Density<'m, const C: usize> {
     footprints: Arc<Footprints<'m>>,
     map: &'m PhotonMap<C>,
+    /// The same photons surface by surface, sorted for the wide radii of few neighbours; empty where nobody asks.
+    coarse: Vec<PhotonMap<C>>,
     /// Flux of one photon, lm.
     photon_lm: f64,
     kernel: Kernel,
@@ -196,14 +206,19 @@ impl<'m, const C: usize> Density<'m, C> {
             Bandwidth::Radius(radius_m) => Reach::Radii(vec![radius_m]),
             Bandwidth::Progressive(radius_m) => Reach::Radii(progressive(radius_m, choice.replicates)),
             Bandwidth::Nearest(k) => Reach::Nearest(k as usize, map.built_for_m()),
+            Bandwidth::AtLeast { radius_m, neighbours } => Reach::AtLeast(radius_m, neighbours as usize),
             Bandwidth::Automatic => {
                 let found = bandwidth::choose(&footprints, map, choice.kernel, choice.replicates, 1.0);
                 let radius_m = found.radius_m;
                 chosen = Some(found);
-                Reach::Radii(vec![radius_m])
+                Reach::AtLeast(radius_m, FEWEST_NEIGHBOURS as usize)
             }
         };
-        Self { footprints, map, photon_lm, kernel: choice.kernel, reach, chosen }
+        let coarse = match reach {
+            Reach::AtLeast(radius_m, _) => by_surface(footprints.geometry(), map, COARSE * radius_m),
+            Reach::Radii(_) | Reach::Nearest(..) => Vec::new(),
+        };
+        Self { footprints, map, coarse, photon_lm, kernel: choice.kernel, reach, chosen }
     }
 
     /// All photons within this radius, m.
@@ -227,6 +242,7 @@ impl<'m, const C: usize> Density<'m, C> {
     pub fn radius_m(&self) -> Option<f64> {
         match &self.reach {
             Reach::Radii(radii) => radii.first().copied(),
+            Reach::AtLeast(radius_m, _) => Some(*radius_m),
             Reach::Nearest(..) => None,
         }
     }
@@ -245,12 +261,30 @@ impl<'m, const C: usize> Density<'m, C> {
         let mut heights = std::mem::take(&mut into.heights);
         let mut found = std::mem::take(&mut into.found);
         heights.clear();
+        into.reach_m = self.narrowest_m();
         let (hits, one_photon) = match &self.reach {
             Reach::Radii(radii) => {
                 for &radius_m in radii {
                     heights.push(self.heights(&footprint, [radius_m, SECOND * radius_m]));
                 }
                 self.sum_within(&footprint, radii, &heights, at, weight, &mut value_of, into)
+            }
+            Reach::AtLeast(radius_m, least) => {
+                if self.holds_at_least(&footprint, *radius_m, *least, at) {
+                    heights.push(self.heights(&footprint, [*radius_m, SECOND * radius_m]));
+                    self.sum_within(&footprint, &[*radius_m], &heights, at, weight, &mut value_of, into)
+                } else {
+                    let guess_m = SECOND * radius_m;
+                    self.sum_nearest(
+                        (*least, guess_m),
+                        &footprint,
+                        &mut found,
+                        at,
+                        weight,
+                        &mut value_of,
+                        into,
+                    )
+                }
             }
             Reach::Nearest(k, guess_m) => {
                 self.sum_nearest((*k, *guess_m), &footprint, &mut found, at, weight, &mut value_of, into)
@@ -271,15 +305,13 @@ impl<'m, const C: usize> Density<'m, C> {
     /// cleared, serves those within a 16th of the radius on the same side of the same surface.
     pub fn gather_evenly(&self, at: &Hit, weight: [f64; C], into: &mut Gathered<C>) {
         let of_side = |_, front: bool| [if front == at.front { 1.0 } else { 0.0 }; C];
-        let Reach::Radii(radii) = &self.reach else { return self.gather(at, weight, of_side, into) };
-        let near_m = SAME_PLACE * radii.iter().copied().fold(f64::INFINITY, f64::min);
         let density = std::ptr::from_ref(self.map).addr();
         let same = |place: &Place<C>| {
             let there = &place.at;
             place.density == density
                 && (there.surface, there.front) == (at.surface, at.front)
                 && there.normal == at.normal
-                && there.position.distance_squared(at.position) <= near_m * near_m
+                && there.position.distance(at.position) <= SAME_PLACE * place.found.reach_m
         };
         let mut places = std::mem::take(&mut into.places);
         let used = into.places_used;
@@ -299,6 +331,27 @@ impl<'m, const C: usize> Density<'m, C> {
             }
         }
         into.places = places;
+    }
+
+    /// The narrowest radius, m; 0 where that is a matter of the neighbours.
+    fn narrowest_m(&self) -> f64 {
+        match &self.reach {
+            Reach::Radii(radii) => radii.iter().copied().fold(f64::INFINITY, f64::min),
+            Reach::AtLeast(radius_m, _) => *radius_m,
+            Reach::Nearest(..) => 0.0,
+        }
+    }
+
+    /// Whether there are so many photons within the radius.
+    fn holds_at_least(&self, footprint: &Footprint<'_>, radius_m: f64, least: usize, at: &Hit) -> bool {
+        let mut number = 0;
+        self.map.within(at.position, radius_m, |photon, _| {
+            // Whether the surface holds it is asked no more often than needed.
+            number += usize::from(
+                number < least && footprint.holds(photon.primitive, || self.map.position(photon)),
+            );
+        });
+        number >= least
     }
 
     /// 1 / (pi r^2) over what of the kernel lies on the surface, 1/m2, for two radii.
@@ -350,14 +403,16 @@ impl<'m, const C: usize> Density<'m, C> {
         value_of: &mut impl FnMut(DVec3, bool) -> [f64; C],
         into: &mut Gathered<C>,
     ) -> (u64, f64) {
+        let map = self.coarse.get(at.surface.0 as usize).unwrap_or(self.map);
         let twice = k.saturating_mul(2);
-        let holds = |p: &Photon<C>| footprint.holds(p.primitive, || self.map.position(p));
-        self.map.nearest(at.position, twice, guess_m, holds, found);
+        let holds = |p: &Photon<C>| footprint.holds(p.primitive, || map.position(p));
+        map.nearest(at.position, twice, guess_m, holds, found);
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         // Positions are no finer than the frame's steps, and no neighbourhood is.
-        let least = self.map.frame().steps_m().max_element();
+        let least = map.frame().steps_m().max_element();
         let Some(&(farthest2, _)) = found.last() else {
             let area = self.footprints.geometry().surfaces()[at.surface.0 as usize].shape.area();
+            into.reach_m = area.sqrt();
             return (0, 1.0 / area);
         };
         let kth2 = found[k.clamp(1, found.len()) - 1].0;
@@ -365,11 +420,12 @@ impl<'m, const C: usize> Density<'m, C> {
         let second =
             if found.len() == twice { farthest2.sqrt() } else { farthest2.sqrt().max(SECOND * first) };
         let second = second.max(least);
+        into.reach_m = first;
         let heights = self.heights(footprint, [first, second]);
         let before = luminance(&into.value);
         let mut hits = 0;
         for &(d2, place) in found.iter() {
-            let photon = &self.map.photons()[place as usize];
+            let photon = &map.photons()[place as usize];
             let (t1, t2) = (d2 / (first * first), d2 / (second * second));
             hits += u64::from(t1 < 1.0);
             self.add_two(photon, [t1, t2], heights, weight, value_of, into);
@@ -407,14 +463,34 @@ impl<'m, const C: usize> Density<'m, C> {
             std::array::from_fn(|c| weight[c] * f[c] * f64::from(photon.weight[c]) * self.photon_lm);
         let at = |i: usize| if t[i] < 1.0 { heights[i] * self.kernel.shape(t[i]) } else { 0.0 };
         let [first, second] = [at(0), at(1)];
-        for c in 0..C {
-            into.value[c] += brought[c] * first;
-            into.second[c] += brought[c] * second;
+        for (c, l) in brought.iter().enumerate() {
+            into.value[c] += l * first;
+            into.second[c] += l * second;
         }
         if let Some(sum) = into.by_replicate.get_mut(photon.replicate()) {
             *sum += luminance(&brought) * first;
         }
     }
+}
+
+/// The photons of every surface by themselves, sorted for at least this radius, m: where there are few, a search for some of them
+/// does not go through the many of another surface.
+fn by_surface<const C: usize>(geometry: &Geometry, map: &PhotonMap<C>, radius_m: f64) -> Vec<PhotonMap<C>> {
+    let mut surface_of = Vec::with_capacity(geometry.primitive_count());
+    for (i, surface) in geometry.surfaces().iter().enumerate() {
+        surface_of.extend(std::iter::repeat_n(i, surface.shape.face_count()));
+    }
+    let mut photons = vec![Vec::new(); geometry.surfaces().len()];
+    for photon in map.photons() {
+        if let Some(&surface) = surface_of.get(photon.primitive as usize) {
+            photons[surface].push(*photon);
+        }
+    }
+    let sorted = |photons: Vec<Photon<C>>| {
+        let guessed = PhotonMap::build(photons, *map.frame(), 0.0);
+        if guessed.built_for_m() < radius_m { guessed.rebuilt(radius_m) } else { guessed }
+    };
+    photons.into_iter().map(sorted).collect()
 }
 
 /// The radius (m) of every replicate.

@@ -45,7 +45,7 @@ impl Kernel {
         let Some(last) = corners.last() else { return 0.0 };
         let height = last.dot(normal);
         let disc2 = 1.0 - height * height;
-        if !(disc2 > 0.0) {
+        if disc2 <= 0.0 {
             return 0.0;
         }
         // G(rho) = integral of k rho / pi from 0 to rho: a rho^2 - b rho^4.
@@ -77,7 +77,7 @@ impl Kernel {
 fn edge(from: DVec3, to: DVec3, normal: DVec3, disc2: f64, [a, b, beyond]: [f64; 3]) -> f64 {
     let along = to - from;
     let length = along.length();
-    if !(length > 0.0) {
+    if length == 0.0 {
         return 0.0;
     }
     let along = along / length;

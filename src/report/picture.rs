@@ -156,6 +156,10 @@ pub fn camera_attributes(
         match spec.bandwidth {
             Bandwidth::Automatic => word("bandwidth", "automatic"),
             Bandwidth::Radius(r) => add("radius_m", Value::F64(r)),
+            Bandwidth::AtLeast { radius_m, neighbours } => {
+                add("radius_m", Value::F64(radius_m));
+                add("nearest", Value::I64(i64::from(neighbours)));
+            }
             Bandwidth::Nearest(k) => add("nearest", Value::I64(i64::from(k))),
             Bandwidth::Progressive(r) => add("progressive_radius_m", Value::F64(r)),
         }

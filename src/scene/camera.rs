@@ -25,12 +25,22 @@ pub enum Method {
     Splat,
 }
 
+/// Photons that the automatic bandwidth takes at least.
+pub const FEWEST_NEIGHBOURS: u32 = 64;
+
 /// Which photons a density is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Bandwidth {
-    /// All within a radius that is chosen once from the photons (docs/METHOD.md).
+    /// All within a radius that is chosen once from the photons, but [`FEWEST_NEIGHBOURS`] at least (docs/PICTURE.md).
     #[default]
     Automatic,
+    /// All within a radius, and where these are fewer than so many, that many nearest.
+    AtLeast {
+        /// The radius, m.
+        radius_m: f64,
+        /// The number.
+        neighbours: u32,
+    },
     /// All within this radius, m.
     Radius(f64),
     /// This many nearest, (k - 1) / (pi r_k^2).

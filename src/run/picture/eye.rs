@@ -13,7 +13,7 @@ use crate::estimate::bandwidth;
 use crate::estimate::density::{Choice, Density};
 use crate::estimate::footprint::Footprints;
 use crate::scene::Scene;
-use crate::scene::camera::{Bandwidth, CameraSpec};
+use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS};
 use crate::tally::photon_map::PhotonMap;
 
 use super::super::plan::Plan;
@@ -89,11 +89,13 @@ impl<'a, const C: usize> Eye<'a, C> {
                 Bandwidth::Automatic => {
                     let kernel = self.spec.kernel;
                     let found = bandwidth::choose(&self.footprints, &maps[k], kernel, self.replicates, part);
-                    of[k] = Bandwidth::Radius(found.radius_m);
+                    of[k] = Bandwidth::AtLeast { radius_m: found.radius_m, neighbours: FEWEST_NEIGHBOURS };
                     let neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
                     chosen[k] = Chosen { radius_m: Some(found.radius_m), neighbours };
                 }
-                Bandwidth::Radius(radius_m) | Bandwidth::Progressive(radius_m) => {
+                Bandwidth::Radius(radius_m)
+                | Bandwidth::Progressive(radius_m)
+                | Bandwidth::AtLeast { radius_m, .. } => {
                     chosen[k].radius_m = Some(radius_m);
                 }
                 Bandwidth::Nearest(n) => chosen[k].neighbours = Some(f64::from(n)),
@@ -105,7 +107,9 @@ impl<'a, const C: usize> Eye<'a, C> {
     /// A map of photons, sorted for the bandwidth if that is known: `density` 0 or 1.
     pub(super) fn radius_to_sort_for_m(&self, chosen: Option<&Bandwidths>, density: usize) -> f64 {
         match chosen.map_or(self.spec.bandwidth, |b| b.of[density]) {
-            Bandwidth::Radius(radius_m) | Bandwidth::Progressive(radius_m) => radius_m,
+            Bandwidth::Radius(radius_m)
+            | Bandwidth::Progressive(radius_m)
+            | Bandwidth::AtLeast { radius_m, .. } => radius_m,
             // For a guess from the number of photons.
             Bandwidth::Automatic | Bandwidth::Nearest(_) => 0.0,
         }
@@ -113,10 +117,14 @@ impl<'a, const C: usize> Eye<'a, C> {
 
     /// Adds what is seen in a pass.
     pub(super) fn add(&mut self, seen: &Seen<'_, C>) -> Result<()> {
+        // The neighbours of a pass are a part of those of the run; two are the fewest that have a density.
+        let of_pass = |n: u32| ((f64::from(n) * seen.part + 0.5) as u32).max(2);
         let density = |k: usize| {
             let bandwidth = match seen.bandwidths.of[k] {
-                // The neighbours of a pass are a part of those of the run; two are the fewest that have a density.
-                Bandwidth::Nearest(n) => Bandwidth::Nearest(((f64::from(n) * seen.part + 0.5) as u32).max(2)),
+                Bandwidth::Nearest(n) => Bandwidth::Nearest(of_pass(n)),
+                Bandwidth::AtLeast { radius_m, neighbours } => {
+                    Bandwidth::AtLeast { radius_m, neighbours: of_pass(neighbours) }
+                }
                 other => other,
             };
             let choice = Choice { bandwidth, kernel: self.spec.kernel, replicates: self.replicates };

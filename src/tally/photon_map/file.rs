@@ -257,7 +257,7 @@ impl<'b> Reader<'b> {
     fn photons<const C: usize>(&mut self) -> Result<Vec<Photon<C>>> {
         let count = u64::from_le_bytes(self.take()?);
         let size = photon_bytes(C);
-        if count != (self.rest.len() / size) as u64 || self.rest.len() % size != 0 {
+        if count != (self.rest.len() / size) as u64 || !self.rest.len().is_multiple_of(size) {
             return Err(Diagnostic::new(
                 Kind::Syntax,
                 format!("{count} photons announced in {} bytes", self.rest.len()),

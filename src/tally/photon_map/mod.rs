@@ -158,7 +158,9 @@ impl<const C: usize> PhotonMap<C> {
             return;
         }
         let farthest = self.frame.farthest_m(centre);
-        let mut radius = if guess_m > 0.0 { guess_m } else { self.built_for_m };
+        // All in one place, in a scene without extent: any radius finds them.
+        let starts = [guess_m, self.built_for_m, farthest / 1024.0];
+        let mut radius = starts.into_iter().find(|r| *r > 0.0).unwrap_or(1.0);
         loop {
             found.clear();
             self.visit(centre, radius, |place, photon, d2| {
@@ -166,10 +168,10 @@ impl<const C: usize> PhotonMap<C> {
                     found.push((d2, place as u32));
                 }
             });
-            if found.len() >= k || !(radius <= farthest) {
+            if found.len() >= k || radius > farthest {
                 break;
             }
-            radius = (2.0 * radius).max(self.frame.steps_m().max_element());
+            radius *= 2.0;
         }
         if !found.is_empty() {
             let last = k.min(found.len()) - 1;
