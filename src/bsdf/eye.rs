@@ -101,7 +101,8 @@ mod tests {
         assert!((weight.weight()[0] * chance - 0.125).abs() < 1e-16);
         assert!((luminance(weight.weight()) - ROULETTE_BELOW).abs() < 1e-16);
         assert!(!weight.reflect(&mirror, &mut script));
-        assert!(!EyeWeight::ONE.reflect(&Reflectance::grey(0.0), &mut Script::default()));
+        let mut fresh = EyeWeight::ONE;
+        assert!(!fresh.reflect(&Reflectance::grey(0.0), &mut Script::default()));
     }
 
     #[test]
