@@ -144,11 +144,12 @@ impl<'a, const C: usize> Brush<'a, C> {
                 let light = self.sample(&points, k, [column, row]);
                 (0..C).for_each(|c| found[c] += light[c]);
             }
+            let gathered = self.path.gathered.value;
             for c in 0..C {
-                found[c] += self.path.gathered.value[c] - before[c];
-                before[c] = self.path.gathered.value[c];
+                found[c] += gathered[c] - before[c];
                 sums.value[c] += found[c] * of_sample;
             }
+            before = gathered;
             sums.by_set[set as usize] += (luminance(found) / f64::from(self.samples_per_set)) as f32;
         }
         let doubts = Doubts::of(&self.path.gathered);

@@ -145,7 +145,8 @@ pub fn narrow(position: [f64; 3], look_at: [f64; 3]) -> CameraSpec {
     CameraSpec { samples: 64, ..CameraSpec::pinhole(position, look_at, up, 0.1, [1, 1]) }
 }
 
-/// Student's t with 15 degrees beyond this has a chance of 1e-4 (two-sided); about 60 numbers are judged so in all.
+/// Student's t with 15 degrees beyond this has a chance of 1e-4 (two-sided); about 60 numbers are judged so in all. (Where no photon
+/// has a part, four sets of samples have 3 degrees: the same limit is then stricter than it need be.)
 const MOST_T: f64 = 5.24;
 
 /// Judges a number in its standard errors, which may be at most this part of it.
