@@ -47,6 +47,8 @@ pub struct Gathered<const C: usize> {
     heights: Vec<[f64; 2]>,
     /// Neighbours found, of the gather in hand.
     found: Vec<(f64, u32)>,
+    /// How far the last ones were sought, m: where the next search begins; what it finds does not depend on it.
+    sought_m: f64,
 }
 
 impl<const C: usize> Gathered<C> {
@@ -60,6 +62,7 @@ impl<const C: usize> Gathered<C> {
             nearest_bias: 0.0,
             heights: Vec::new(),
             found: Vec::new(),
+            sought_m: 0.0,
         }
     }
 
@@ -279,6 +282,8 @@ impl<'m, const C: usize> Density<'m, C> {
         into: &mut Gathered<C>,
     ) -> (u64, f64) {
         let twice = k.saturating_mul(2);
+        // A little more than the last time, pixels being neighbours; never so much that a dense place is read in vain.
+        let guess_m = if into.sought_m > 0.0 { (1.1 * into.sought_m).min(2.0 * guess_m) } else { guess_m };
         let holds = |p: &Photon<C>| footprint.holds(p.primitive, || self.map.position(p));
         self.map.nearest(at.position, twice, guess_m, holds, found);
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -288,6 +293,7 @@ impl<'m, const C: usize> Density<'m, C> {
             let area = self.footprints.geometry().surfaces()[at.surface.0 as usize].shape.area();
             return (0, 1.0 / area);
         };
+        into.sought_m = farthest2.sqrt();
         let kth2 = found[k.clamp(1, found.len()) - 1].0;
         let first = kth2.sqrt().max(least);
         let second =
