@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit};
 use crate::scene::camera::{Bandwidth, CameraSpec, Kernel};
-use crate::tally::photon_map::{Photon, PhotonMap};
+use crate::tally::photon_map::{Photon, PhotonMap, by_distance};
 use crate::units::LUMINANCE_OF_RGB;
 
 use super::bandwidth::{self, Chosen};
@@ -286,7 +286,7 @@ impl<'m, const C: usize> Density<'m, C> {
         let guess_m = if into.sought_m > 0.0 { (1.1 * into.sought_m).min(2.0 * guess_m) } else { guess_m };
         let holds = |p: &Photon<C>| footprint.holds(p.primitive, || self.map.position(p));
         self.map.nearest(at.position, twice, guess_m, holds, found);
-        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.sort_unstable_by_key(by_distance);
         // Positions are no finer than the frame's steps, and no neighbourhood is.
         let least = self.map.frame().steps_m().max_element();
         let Some(&(farthest2, _)) = found.last() else {
