@@ -520,7 +520,7 @@ fn an_even_density_gets_the_widest_radius_and_an_edge_a_narrow_one() {
     // Stripes a hundredth wide, lit and dark: the radius must not bridge them.
     let striped = on_the_floor(&frame, 2 * n, 2, 8).into_iter().filter(|p| {
         let x = frame.position(p.cell).x;
-        (x * 50.0) as u64 % 2 == 0
+        ((x * 50.0) as u64).is_multiple_of(2)
     });
     let striped = PhotonMap::build(striped.collect(), frame, 0.0);
     let stripes = choose(&footprints, &striped, Kernel::Epanechnikov, 8, 1.0);

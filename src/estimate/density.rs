@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit};
 use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS, Kernel};
-use crate::tally::photon_map::{Photon, PhotonMap};
+use crate::tally::photon_map::{Photon, PhotonMap, by_distance};
 use crate::units::LUMINANCE_OF_RGB;
 
 use super::bandwidth::{self, Chosen};
@@ -52,6 +52,8 @@ pub struct Gathered<const C: usize> {
     /// What was gathered evenly since the last [`Self::clear`]: the first so many are in use.
     places: Vec<Place<C>>,
     places_used: usize,
+    /// How far the last ones were sought, m: where the next search begins; what it finds does not depend on it.
+    sought_m: f64,
 }
 
 /// Where light was gathered evenly, and what was found for a weight of 1.
@@ -86,6 +88,7 @@ impl<const C: usize> Gathered<C> {
             found: Vec::new(),
             places: Vec::new(),
             places_used: 0,
+            sought_m: 0.0,
         }
     }
 
@@ -405,9 +408,11 @@ impl<'m, const C: usize> Density<'m, C> {
     ) -> (u64, f64) {
         let map = self.coarse.get(at.surface.0 as usize).unwrap_or(self.map);
         let twice = k.saturating_mul(2);
+        // A little more than the last time, pixels being neighbours; never so much that a dense place is read in vain.
+        let guess_m = if into.sought_m > 0.0 { (1.1 * into.sought_m).min(2.0 * guess_m) } else { guess_m };
         let holds = |p: &Photon<C>| footprint.holds(p.primitive, || map.position(p));
         map.nearest(at.position, twice, guess_m, holds, found);
-        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.sort_unstable_by_key(by_distance);
         // Positions are no finer than the frame's steps, and no neighbourhood is.
         let least = map.frame().steps_m().max_element();
         let Some(&(farthest2, _)) = found.last() else {
@@ -415,6 +420,7 @@ impl<'m, const C: usize> Density<'m, C> {
             into.reach_m = area.sqrt();
             return (0, 1.0 / area);
         };
+        into.sought_m = farthest2.sqrt();
         let kth2 = found[k.clamp(1, found.len()) - 1].0;
         let first = kth2.sqrt().max(least);
         let second =

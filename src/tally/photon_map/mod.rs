@@ -175,7 +175,7 @@ impl<const C: usize> PhotonMap<C> {
         }
         if !found.is_empty() {
             let last = k.min(found.len()) - 1;
-            found.select_nth_unstable_by(last, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            found.select_nth_unstable_by_key(last, by_distance);
             found.truncate(last + 1);
         }
     }
@@ -211,6 +211,12 @@ impl<const C: usize> PhotonMap<C> {
         let end = ((low + 1) * BLOCK).min(self.photons.len()).max(begin);
         begin + self.photons[begin..end].partition_point(|p| self.order.key(p.cell) < key)
     }
+}
+
+/// Distance, then place, as one integer: squares are not negative, and bits of such numbers stand in their order.
+#[inline(always)]
+pub fn by_distance(&(d2, place): &(f64, u32)) -> u128 {
+    u128::from(d2.to_bits()) << 32 | u128::from(place)
 }
 
 /// A radius that holds some tens of photons if they lie evenly on the largest face of their bounds.
