@@ -94,33 +94,10 @@ impl Reusable {
 /// The number of 64-bit fractions.
 pub(crate) const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
-/// d / width as a 64-bit fraction, d < width, rounded down.
-///
-/// By a quotient of 53 bits and its correction: two multiplications and one division in f64 instead of a division of
-/// 128 bits by 64, which takes most of an event's time.
+/// d / width as a 64-bit fraction, d < width.
 #[inline]
 fn divide(d: u64, width: u64) -> u64 {
-    // Below this width the correction would have too few bits; such events are rarer than 2^-24.
-    if width < 1 << 40 {
-        return ((u128::from(d) << 64) / u128::from(width)) as u64;
-    }
-    let reciprocal = 1.0 / width as f64;
-    let mut quotient = (d as f64 * reciprocal * TWO_TO_64) as u64;
-    // d 2^64 - quotient x width: at most 2^13 widths off, so it fits 2^77 and its upper part an i64.
-    let mut rest =
-        ((u128::from(d) << 64) as i128).wrapping_sub((u128::from(quotient) * u128::from(width)) as i128);
-    let correction = ((rest >> 16) as i64 as f64 * reciprocal * 65_536.0) as i64;
-    quotient = quotient.wrapping_add(correction as u64);
-    rest -= i128::from(correction) * i128::from(width);
-    while rest < 0 {
-        quotient = quotient.wrapping_sub(1);
-        rest += i128::from(width);
-    }
-    while rest >= i128::from(width) {
-        quotient = quotient.wrapping_add(1);
-        rest -= i128::from(width);
-    }
-    quotient
+    ((u128::from(d) << 64) / u128::from(width)) as u64
 }
 
 /// Widths of events on the 64-bit integers, in proportion to weights; they sum to 2^64 exactly.
@@ -171,20 +148,6 @@ mod tests {
                 };
                 assert_eq!(happened, bits < t);
                 assert_eq!(u128::from(u.bits()), (d << 64) / w);
-            }
-        }
-    }
-
-    #[test]
-    fn quotients_are_those_of_128_bits() {
-        let widths = [1, 3, 1 << 39, (1 << 40) - 1, 1 << 40, (1 << 40) + 1, 1 << 53, (1 << 63) + 1, u64::MAX];
-        let some = (0..20_000).map(|i| crate::sequence::hash::mix64(i) >> (i % 24));
-        for width in widths.into_iter().chain(some).filter(|w| *w > 0) {
-            let middle = crate::sequence::hash::mix64(width) % width;
-            for d in [0, 1, width / 3, width / 2, middle, width.saturating_sub(2), width - 1] {
-                let d = d.min(width - 1);
-                let exact = ((u128::from(d) << 64) / u128::from(width)) as u64;
-                assert_eq!(divide(d, width), exact, "{d} / {width}");
             }
         }
     }

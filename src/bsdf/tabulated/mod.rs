@@ -190,8 +190,8 @@ impl Tabulated {
         Lobes { arrival, lobes: face.layers.map(layer) }
     }
 
-    /// Scatters what the throughput lets be scattered.
-    #[inline]
+    /// Scatters what the throughput lets be scattered. (Kept out of the walk, whose other surfaces need few registers.)
+    #[inline(never)]
     pub fn interact<C: Chooser, T: Throughput>(
         &self,
         at: &Incidence,
