@@ -4,6 +4,8 @@
 //! a 64-bit fraction, below 1 by construction because u - T_k < w_k. An event of probability zero owns no integer and
 //! is never chosen.
 
+use crate::sequence::to_unit_f64;
+
 /// A coordinate that serves several discrete events in turn, and the record of how much of it is used up.
 #[derive(Debug, Clone, Copy)]
 pub struct Reusable {
@@ -22,6 +24,9 @@ pub struct Share {
 }
 
 impl Share {
+    /// All fractions.
+    pub const ALL: Self = Self { low: 0, width: 0 };
+
     /// The fraction of the event that leaves this remainder, to the resolution of its width: the inverse of
     /// [`Reusable::take`].
     pub fn invert(self, remainder: u64) -> u64 {
@@ -30,10 +35,60 @@ impl Share {
             width => self.low + ((u128::from(remainder) * u128::from(width)) >> 64) as u64,
         }
     }
+
+    /// The part of all fractions that belongs to the event: its probability.
+    #[inline]
+    pub fn probability(self) -> f64 {
+        if self.width == 0 { 1.0 } else { self.width as f64 / TWO_TO_64 }
+    }
+
+    /// What [`Reusable::take`] leaves of a fraction of the event, for a last use: to 53 bits and below 1.
+    #[inline]
+    pub fn rest(self, bits: u64) -> f64 {
+        match self.width {
+            0 => to_unit_f64(bits),
+            width => below_one((bits - self.low) as f64 / width as f64),
+        }
+    }
+
+    /// A part of this event, chosen by the fraction `v` of it that `find` turns into a part: (what was found, the part's
+    /// probability in this event, what is left of v for a last use).
+    #[inline]
+    pub fn choose_part<R>(self, v: u64, find: impl FnOnce(u64) -> (R, Self)) -> (R, f64, f64) {
+        if self.width == 0 {
+            let (found, part) = find(v);
+            return (found, part.probability(), part.rest(v));
+        }
+        let product = u128::from(v) * u128::from(self.width);
+        let at = self.low + (product >> 64) as u64;
+        let (found, part) = find(at);
+        // The part lies in this event, so it is narrower than all fractions.
+        let (whole, width) = (self.width as f64, part.width as f64);
+        let inside = (at - part.low) as f64 + product as u64 as f64 / TWO_TO_64;
+        (found, width / whole, below_one(inside / width))
+    }
+
+    /// The fraction of this event at which `part` of it leaves `rest`: the inverse of [`Self::choose_part`], to 53 bits.
+    pub fn invert_part(self, part: Self, rest: f64) -> f64 {
+        if part.width == 0 {
+            return rest;
+        }
+        let whole = if self.width == 0 { TWO_TO_64 } else { self.width as f64 };
+        (((part.low - self.low) as f64 + rest * part.width as f64) / whole).min(ALMOST_ONE)
+    }
+}
+
+/// The largest f64 below 1.
+const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+
+/// A quotient of integers d < w, which may have rounded to 1.
+#[inline]
+fn below_one(quotient: f64) -> f64 {
+    quotient.min(ALMOST_ONE)
 }
 
 /// Of its 64 bits a coordinate must keep at least 24 for the next use: a span of 2^-40.
-const SMALLEST_SPAN: f64 = 1.0 / (1u64 << 40) as f64;
+pub(super) const SMALLEST_SPAN: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl Reusable {
     /// A coordinate of which nothing is used.
@@ -46,6 +101,12 @@ impl Reusable {
     #[inline]
     pub fn bits(&self) -> u64 {
         self.bits
+    }
+
+    /// Product of the probabilities of the events chosen so far.
+    #[inline]
+    pub fn span(&self) -> f64 {
+        self.span
     }
 
     /// Whether fewer than 24 of the 64 bits remain, so that the next use needs a fresh coordinate.

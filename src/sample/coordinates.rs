@@ -4,7 +4,7 @@
 //! is drawn; an event with one possible outcome draws none. With renormalisation all discrete events of a photon
 //! share one coordinate until fewer than 24 of its 64 bits are left; without, each draws its own.
 
-use super::choose::{Reusable, TWO_TO_64};
+use super::choose::{Reusable, SMALLEST_SPAN, TWO_TO_64};
 use super::discrete::Discrete;
 use super::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
@@ -88,6 +88,25 @@ pub trait Chooser {
         if u.is_spent() { self.uniform(purpose) } else { to_unit_f64(u.bits()) }
     }
 
+    /// Whether a coordinate goes on after a choice.
+    #[inline]
+    fn reuses(&self) -> bool {
+        true
+    }
+
+    /// A choice among more than one outcome: one more of the photon's events, where these share a coordinate; else on a
+    /// coordinate of this purpose.
+    #[inline]
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        choice(&mut self.reusable(purpose))
+    }
+
+    /// What is left of a coordinate after a choice of this probability, for a last use; a fresh one where too little is.
+    #[inline]
+    fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
+        if probability < SMALLEST_SPAN { self.uniform(purpose) } else { left }
+    }
+
     /// How tables of scattering are sampled.
     #[inline]
     fn sampling(&self) -> Sampling {
@@ -148,6 +167,15 @@ impl<'p, P: Points> Coordinates<'p, P> {
         Reusable::fresh(self.draw(purpose))
     }
 
+    /// The coordinate of discrete events, a fresh one where too little of it is left.
+    #[inline]
+    fn event_coordinate(&mut self) -> Reusable {
+        match self.event {
+            Some(u) if !u.is_spent() => u,
+            _ => self.draw_reusable(Purpose::Event),
+        }
+    }
+
     /// An event of `table` on `u`; a spent coordinate is replaced first.
     #[inline]
     pub fn choose(&mut self, table: &Discrete, u: &mut Reusable, purpose: Purpose) -> usize {
@@ -180,10 +208,7 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
         if probability >= 1.0 {
             return true;
         }
-        let mut u = match self.event {
-            Some(u) if !u.is_spent() => u,
-            _ => self.draw_reusable(Purpose::Event),
-        };
+        let mut u = self.event_coordinate();
         let happened = u.happens(probability);
         self.event = self.reuse.then_some(u);
         happened
@@ -219,6 +244,22 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
     #[inline]
     fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
         self.remainder(u, purpose)
+    }
+
+    #[inline]
+    fn reuses(&self) -> bool {
+        self.reuse
+    }
+
+    #[inline]
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        if !self.reuse {
+            return choice(&mut self.draw_reusable(purpose));
+        }
+        let mut u = self.event_coordinate();
+        let chosen = choice(&mut u);
+        self.event = Some(u);
+        chosen
     }
 
     #[inline]

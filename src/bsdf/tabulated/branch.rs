@@ -12,7 +12,6 @@ use crate::sample::coordinates::{Chooser, Purpose};
 use crate::sample::grid::GridPoint;
 use crate::sample::method::{Rejection, Sampling};
 use crate::scattering::Quantity;
-use crate::sequence::to_unit_f64;
 
 /// The lobes of a face for one incidence: the one that reflects, the one that transmits.
 pub(super) struct Lobes<'a> {
@@ -148,17 +147,16 @@ impl<'a> Lobes<'a> {
     #[inline]
     pub fn sample<C: Chooser>(&self, shares: Option<[f64; 3]>, chooser: &mut C) -> Option<Left> {
         let branches = self.branches(shares);
-        let mut u = chooser.reusable(Purpose::Scatter);
         let branch = match branches.as_slice() {
             [] => return None,
             [only] => *only,
-            _ => chooser.choose_by(&mut u, Purpose::Scatter, |u| branches.choose(u))?,
+            _ => chooser.decide(Purpose::Scatter, |u| branches.choose(u))?,
         };
         let (layer, mix) = self.lobes[branch.lobe as usize].as_ref()?;
         let slice = branch.slice as usize;
         let point = match chooser.sampling() {
-            Sampling::Inverse(solver) => invert(&layer.grids, slice, u, solver, chooser),
-            Sampling::Rejection(rejection) => reject(&layer.grids, slice, u, rejection, chooser),
+            Sampling::Inverse(solver) => invert(&layer.grids, slice, solver, chooser),
+            Sampling::Rejection(rejection) => reject(&layer.grids, slice, rejection, chooser),
         };
         let wo = self.axes(layer) * point.direction;
         let values = if shares.is_some() {
@@ -179,7 +177,7 @@ impl<'a> Lobes<'a> {
                 self.lobes[branch.lobe as usize].as_ref().filter(|(l, _)| l.quantity == quantity)
             {
                 let (theta, phi) = angles(&self.axes(layer), wo);
-                let inside = layer.grids.invert(branch.slice as usize, theta, phi);
+                let inside = layer.grids.invert_by_row(branch.slice as usize, theta, phi);
                 found.extend(inside.map(|(remainder, u2)| (share.invert(remainder), u2)));
             }
             false // All of them.
@@ -201,15 +199,19 @@ impl<'a> Lobes<'a> {
     }
 }
 
-/// By inverse functions: the cell on what is left of `u`, then theta, then phi on a coordinate of its own.
+/// By inverse functions. Where a coordinate goes on after a choice, one serves for the row and theta, the other for the column
+/// and phi; else the cell has a coordinate of its own.
 #[inline]
-fn invert<C: Chooser>(
-    grids: &CompactGrids,
-    slice: usize,
-    mut u: Reusable,
-    solver: Solver,
-    chooser: &mut C,
-) -> GridPoint {
+fn invert<C: Chooser>(grids: &CompactGrids, slice: usize, solver: Solver, chooser: &mut C) -> GridPoint {
+    let mut u = chooser.reusable(Purpose::Scatter);
+    if chooser.reuses() {
+        let v = chooser.reusable(Purpose::Scatter);
+        let (row, share) = grids.row_of(slice, u.bits());
+        let u_theta = chooser.left(share.rest(u.bits()), share.probability(), Purpose::Scatter);
+        let (column, probability, rest) = grids.column_of(slice, row, share, v.bits());
+        let u_phi = chooser.left(rest, probability, Purpose::Scatter);
+        return grids.place_at(slice, [row, column], [u_theta, u_phi], solver);
+    }
     let cell = choose_cell(grids, slice, &mut u, chooser);
     let u_theta = chooser.rest(u, Purpose::Scatter);
     let u_phi = chooser.uniform(Purpose::Scatter);
@@ -230,10 +232,10 @@ fn choose_cell<C: Chooser>(grids: &CompactGrids, slice: usize, u: &mut Reusable,
 fn reject<C: Chooser>(
     grids: &CompactGrids,
     slice: usize,
-    mut u: Reusable,
     rejection: Rejection,
     chooser: &mut C,
 ) -> GridPoint {
+    let mut u = chooser.reusable(Purpose::Scatter);
     let cell = match rejection {
         Rejection::Cell => Some(choose_cell(grids, slice, &mut u, chooser)),
         Rejection::Table | Rejection::NextPoint => None,
@@ -258,11 +260,17 @@ fn angles(axes: &DMat3, wo: DVec3) -> (f64, f64) {
     (libm::atan2(libm::hypot(d.x, d.y), d.z), libm::atan2(d.y, d.x))
 }
 
-/// Two given coordinates.
+/// Two given coordinates, the first of which chooses the slice too.
 pub(super) struct Given {
-    pub u1: u64,
-    pub u2: f64,
-    pub solver: Solver,
+    u1: Option<Reusable>,
+    u2: f64,
+    solver: Solver,
+}
+
+impl Given {
+    pub fn new(u1: u64, u2: f64, solver: Solver) -> Self {
+        Self { u1: Some(Reusable::fresh(u1)), u2, solver }
+    }
 }
 
 impl Chooser for Given {
@@ -275,15 +283,19 @@ impl Chooser for Given {
     }
 
     fn reusable(&mut self, _: Purpose) -> Reusable {
-        Reusable::fresh(self.u1)
+        self.u1.take().unwrap_or(Reusable::fresh((self.u2 * TWO_TO_64) as u64))
     }
 
-    fn choose_by<R>(&mut self, u: &mut Reusable, _: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
-        choice(u)
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        let mut u = self.reusable(purpose);
+        let chosen = choice(&mut u);
+        self.u1 = Some(u);
+        chosen
     }
 
-    fn rest(&mut self, u: Reusable, _: Purpose) -> f64 {
-        to_unit_f64(u.bits())
+    /// However little is left: there is no other.
+    fn left(&mut self, left: f64, _: f64, _: Purpose) -> f64 {
+        left
     }
 
     fn sampling(&self) -> Sampling {

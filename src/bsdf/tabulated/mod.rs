@@ -294,7 +294,7 @@ impl Tabulated {
     pub fn sample(&self, from_front: bool, wi: DVec3, u1: u64, u2: f64, solver: Solver) -> Option<Scattered> {
         self.local(from_front, wi, |face, lobes| {
             let shares = face.coloured.then_some(LUMINANCE_OF_RGB);
-            let left = lobes.sample(shares, &mut Given { u1, u2, solver })?;
+            let left = lobes.sample(shares, &mut Given::new(u1, u2, solver))?;
             Some(Scattered { wo: left.wo, quantity: left.quantity, below_horizon: left.below_horizon })
         })
     }
