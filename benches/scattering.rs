@@ -16,7 +16,7 @@ use caustix::sample::coordinates::{Coordinates, Purpose};
 use caustix::sample::grid::Grid;
 use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
-use caustix::sequence::{Points, to_unit_f64};
+use caustix::sequence::to_unit_f64;
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };

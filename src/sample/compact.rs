@@ -302,14 +302,21 @@ impl CompactGrids {
     #[inline]
     pub fn place(&self, slice: usize, cell: usize, u_theta: f64, u_phi: f64, solver: Solver) -> GridPoint {
         let (i, j) = (cell / self.columns.len(), cell % self.columns.len());
-        self.place_at(slice, [i, j], [u_theta, u_phi], solver)
+        self.place_at(slice, [i, j], [u_theta, u_phi], solver).0
     }
 
-    /// The same for a cell by its row and column.
+    /// The same for a cell by its row and column, and where in the cell the point lies.
     #[inline]
-    pub fn place_at(&self, slice: usize, [i, j]: [usize; 2], u: [f64; 2], solver: Solver) -> GridPoint {
-        let cell = self.cell(slice, i, j);
-        GridPoint::in_cell(&cell, &self.rows[i], &self.columns[j], u, solver)
+    pub fn place_at(
+        &self,
+        slice: usize,
+        [row, column]: [usize; 2],
+        u: [f64; 2],
+        solver: Solver,
+    ) -> (GridPoint, Located) {
+        let cell = self.cell(slice, row, column);
+        let (point, s, x) = GridPoint::in_cell(&cell, &self.rows[row], &self.columns[column], u, solver);
+        (point, Located { row, column, s, x })
     }
 
     /// The point of a slice for two coordinates, of which the first chooses the row and the second the column: u1 goes with the
@@ -319,7 +326,7 @@ impl CompactGrids {
     pub fn sample_by_row(&self, slice: usize, u1: u64, u2: u64, solver: Solver) -> GridPoint {
         let (row, share) = self.row_of(slice, u1);
         let (column, _, u_phi) = self.column_of(slice, row, share, u2);
-        self.place_at(slice, [row, column], [share.rest(u1), u_phi], solver)
+        self.place_at(slice, [row, column], [share.rest(u1), u_phi], solver).0
     }
 
     /// The coordinates whose sample is (theta, phi) by [`Self::sample_by_row`]; `None` outside the grid and in cells of zero
