@@ -214,6 +214,37 @@ mod tests {
     }
 
     #[test]
+    fn a_part_of_an_event_is_chosen_as_by_exact_division() {
+        // An event and the parts of it, the widths of both far apart; the whole line as an event too.
+        let event = Share { low: 1 << 40, width: (1 << 62) + 12_345 };
+        for event in [event, Share::ALL] {
+            let whole = if event.width == 0 { 1u128 << 64 } else { u128::from(event.width) };
+            let cuts = [0, 1, 1 << 20, whole / 3, whole / 3 + 7, whole / 2, whole];
+            for i in 0..20_000u64 {
+                let v = crate::sequence::hash::mix64(i);
+                let v = [v, 0, u64::MAX, v >> 40][(i % 4) as usize];
+                let at = u128::from(v) * whole >> 64;
+                let k = cuts.iter().rposition(|c| *c <= at).unwrap();
+                let part = Share { low: event.low + cuts[k] as u64, width: (cuts[k + 1] - cuts[k]) as u64 };
+                let (found, probability, rest) = event.choose_part(v, |fraction| {
+                    assert_eq!(fraction, event.low + at as u64);
+                    (k, part)
+                });
+                assert_eq!(found, k);
+                let width = u128::from(part.width);
+                assert!((probability / (width as f64 / whole as f64) - 1.0).abs() < 1e-15);
+                // ((v whole / 2^64) - cut) / width in integers, to 2^-60.
+                let behind = (u128::from(v) * whole - (cuts[k] << 64)) / width;
+                let exact = (behind >> 4) as f64 / (1u64 << 60) as f64;
+                assert!((rest - exact).abs() < 1e-15 && rest < 1.0, "{v} in {k}: {rest} {exact}");
+                let back = event.invert_part(part, rest);
+                assert!((back - to_unit_f64(v)).abs() < 1e-15, "{v} in {k}");
+            }
+        }
+        assert!(Share { low: 0, width: u64::MAX }.rest(u64::MAX - 1) < 1.0);
+    }
+
+    #[test]
     fn extremes_land_where_they_must() {
         let mut low = Reusable::fresh(0);
         assert!(low.happens(1e-300), "u = 0 always happens");

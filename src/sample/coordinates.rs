@@ -287,6 +287,31 @@ mod tests {
     }
 
     #[test]
+    fn a_choice_is_one_more_event_with_reuse_and_has_its_own_coordinate_without() {
+        let points = IndependentPoints::new(1, 0);
+        for (reuse, drawn, label) in [(true, 1, Purpose::Event), (false, 2, Purpose::Scatter)] {
+            let mut c = Coordinates::new(&points, 5, reuse);
+            c.happens(0.9);
+            let left = c.decide(Purpose::Scatter, |u| u.happens(0.5));
+            assert_eq!(c.drawn(), drawn);
+            assert!(c.drawn_for()[label as usize] == 1);
+            // The event's remainder decides, or the photon's second coordinate.
+            let mut first = Reusable::fresh(points.coordinate(5, 0));
+            first.happens(0.9);
+            let mut other = Reusable::fresh(points.coordinate(5, 1));
+            assert_eq!(left, if reuse { &mut first } else { &mut other }.happens(0.5));
+        }
+    }
+
+    #[test]
+    fn too_little_left_of_a_choice_is_replaced() {
+        let points = IndependentPoints::new(1, 0);
+        let mut c = Coordinates::new(&points, 5, true);
+        assert_eq!(c.left(0.3, 2f64.powi(-40), Purpose::Scatter), 0.3);
+        assert_eq!(c.left(0.3, 2f64.powi(-41), Purpose::Scatter), to_unit_f64(points.coordinate(5, 0)));
+    }
+
+    #[test]
     fn certain_events_draw_nothing() {
         let points = IndependentPoints::new(1, 0);
         let mut c = Coordinates::new(&points, 0, true);

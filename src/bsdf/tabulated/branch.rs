@@ -1,5 +1,9 @@
-//! Which slice of which lobe scatters a photon, and where to: the discrete choices on the first coordinate and what follows
-//! from them.
+//! Which slice of which lobe scatters a photon, and where to.
+//!
+//! With renormalisation the slice is one of the photon's discrete events, on the coordinate that all of these share, and the
+//! direction has two coordinates to itself: one for row and polar angle, one for column and azimuth. So the direction goes
+//! steadily with both and hardly changes with the slice, and points that fill the unit cube evenly fill the lobe evenly, even
+//! where their number allows only a few strata in each of many dimensions (docs/STUDY.md). Without, each choice has its own coordinate.
 
 use glam::{DMat3, DVec3};
 

@@ -174,18 +174,18 @@ impl Tabulated {
         &self.faces[usize::from(!from_front)]
     }
 
-    /// The table's reference direction on a facet with this outward normal.
+    /// The table's reference direction on a facet with this outward normal, of any length.
     #[inline]
-    fn tangent(&self, outward: DVec3) -> DVec3 {
-        let x = self.reference.tangent(outward);
+    fn along(&self, outward: DVec3) -> DVec3 {
+        let x = self.reference.along(outward);
         let (sin, cos) = self.turn;
         cos * x + sin * outward.cross(x)
     }
 
     #[inline]
-    fn lobes<'a>(&'a self, face: &Face, arrival: &'a Arrival, tangent: impl FnOnce() -> DVec3) -> Lobes<'a> {
+    fn lobes<'a>(&'a self, face: &Face, arrival: &'a Arrival, along: impl FnOnce() -> DVec3) -> Lobes<'a> {
         let theta = if face.has_angles { arrival.theta() } else { 0.0 };
-        let phi = if face.has_azimuths { arrival.phi(tangent()) } else { 0.0 };
+        let phi = if face.has_azimuths { arrival.phi(along()) } else { 0.0 };
         let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
         Lobes { arrival, lobes: face.layers.map(layer) }
     }
@@ -199,9 +199,9 @@ impl Tabulated {
         carried: &mut T,
     ) -> Outcome {
         let face = self.face(at.front);
-        let tangent = || self.tangent(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, tangent);
-        let lobes = self.lobes(face, &arrival, tangent);
+        let along = || self.along(if at.front { at.facet } else { -at.facet });
+        let arrival = Arrival::new(-at.direction, at.facet, along);
+        let lobes = self.lobes(face, &arrival, along);
         let albedo = lobes.albedo(face.coloured);
         let fate = if face.coloured || face.rest.is_some() {
             carried.scatter(albedo, face.rest.is_some(), chooser)
@@ -239,9 +239,9 @@ impl Tabulated {
     /// a cell, against a slice's largest value).
     pub fn proposals(&self, at: &Incidence) -> (f64, f64) {
         let face = self.face(at.front);
-        let tangent = || self.tangent(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, tangent);
-        self.lobes(face, &arrival, tangent).proposals(face.coloured.then_some(LUMINANCE_OF_RGB))
+        let along = || self.along(if at.front { at.facet } else { -at.facet });
+        let arrival = Arrival::new(-at.direction, at.facet, along);
+        self.lobes(face, &arrival, along).proposals(face.coloured.then_some(LUMINANCE_OF_RGB))
     }
 }
 
