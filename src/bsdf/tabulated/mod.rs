@@ -175,24 +175,24 @@ impl Tabulated {
         &self.faces[usize::from(!from_front)]
     }
 
-    /// The table's reference direction on a facet with this outward normal.
+    /// The table's reference direction on a facet with this outward normal, of any length.
     #[inline]
-    fn tangent(&self, outward: DVec3) -> DVec3 {
-        let x = self.reference.tangent(outward);
+    fn along(&self, outward: DVec3) -> DVec3 {
+        let x = self.reference.along(outward);
         let (sin, cos) = self.turn;
         cos * x + sin * outward.cross(x)
     }
 
     #[inline]
-    fn lobes<'a>(&'a self, face: &Face, arrival: &'a Arrival, tangent: impl FnOnce() -> DVec3) -> Lobes<'a> {
+    fn lobes<'a>(&'a self, face: &Face, arrival: &'a Arrival, along: impl FnOnce() -> DVec3) -> Lobes<'a> {
         let theta = if face.has_angles { arrival.theta() } else { 0.0 };
-        let phi = if face.has_azimuths { arrival.phi(tangent()) } else { 0.0 };
+        let phi = if face.has_azimuths { arrival.phi(along()) } else { 0.0 };
         let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
         Lobes { arrival, lobes: face.layers.map(layer) }
     }
 
-    /// Scatters what the throughput lets be scattered.
-    #[inline]
+    /// Scatters what the throughput lets be scattered. (Kept out of the walk, whose other surfaces need few registers.)
+    #[inline(never)]
     pub fn interact<C: Chooser, T: Throughput>(
         &self,
         at: &Incidence,
@@ -200,9 +200,9 @@ impl Tabulated {
         carried: &mut T,
     ) -> Outcome {
         let face = self.face(at.front);
-        let tangent = || self.tangent(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, tangent);
-        let lobes = self.lobes(face, &arrival, tangent);
+        let along = || self.along(if at.front { at.facet } else { -at.facet });
+        let arrival = Arrival::new(-at.direction, at.facet, along);
+        let lobes = self.lobes(face, &arrival, along);
         let albedo = lobes.albedo(face.coloured);
         let fate = if face.coloured || face.rest.is_some() {
             carried.scatter(albedo, face.rest.is_some(), chooser)
@@ -240,9 +240,9 @@ impl Tabulated {
     /// a cell, against a slice's largest value).
     pub fn proposals(&self, at: &Incidence) -> (f64, f64) {
         let face = self.face(at.front);
-        let tangent = || self.tangent(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, tangent);
-        self.lobes(face, &arrival, tangent).proposals(face.coloured.then_some(LUMINANCE_OF_RGB))
+        let along = || self.along(if at.front { at.facet } else { -at.facet });
+        let arrival = Arrival::new(-at.direction, at.facet, along);
+        self.lobes(face, &arrival, along).proposals(face.coloured.then_some(LUMINANCE_OF_RGB))
     }
 }
 
@@ -295,7 +295,7 @@ impl Tabulated {
     pub fn sample(&self, from_front: bool, wi: DVec3, u1: u64, u2: f64, solver: Solver) -> Option<Scattered> {
         self.local(from_front, wi, |face, lobes| {
             let shares = face.coloured.then_some(LUMINANCE_OF_RGB);
-            let left = lobes.sample(shares, &mut Given { u1, u2, solver })?;
+            let left = lobes.sample(shares, &mut Given::new(u1, u2, solver))?;
             Some(Scattered { wo: left.wo, quantity: left.quantity, below_horizon: left.below_horizon })
         })
     }
