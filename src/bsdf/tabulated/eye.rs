@@ -27,7 +27,7 @@ impl Tabulated {
         }
         let quantity = if wi.front == wo.front { Quantity::Reflection } else { Quantity::Transmission };
         let (face, arrival) = self.arriving(outward, wi);
-        let lobes = self.lobes(face, &arrival, || self.tangent(outward));
+        let lobes = self.lobes(face, &arrival, || self.along(outward));
         lobes.eval_cos(quantity, wo.direction).map(|g| g / cos_o)
     }
 
@@ -49,7 +49,7 @@ impl Tabulated {
             };
             // Light of that side, on its way here.
             let (face, arrival) = self.arriving(outward, Leg { direction, front: lit_front });
-            let albedo = self.lobes(face, &arrival, || self.tangent(outward)).albedo(face.coloured);
+            let albedo = self.lobes(face, &arrival, || self.along(outward)).albedo(face.coloured);
             Some(Beyond { direction, through, part: albedo.map(|a| (1.0 - a).max(0.0)) })
         })
     }
@@ -57,6 +57,6 @@ impl Tabulated {
     #[inline]
     fn arriving(&self, outward: DVec3, wi: Leg) -> (&Face, Arrival) {
         let normal = if wi.front { outward } else { -outward };
-        (self.face(wi.front), Arrival::new(wi.direction, normal, || self.tangent(outward)))
+        (self.face(wi.front), Arrival::new(wi.direction, normal, || self.along(outward)))
     }
 }
