@@ -223,7 +223,7 @@ mod tests {
             for i in 0..20_000u64 {
                 let v = crate::sequence::hash::mix64(i);
                 let v = [v, 0, u64::MAX, v >> 40][(i % 4) as usize];
-                let at = u128::from(v) * whole >> 64;
+                let at = (u128::from(v) * whole) >> 64;
                 let k = cuts.iter().rposition(|c| *c <= at).unwrap();
                 let part = Share { low: event.low + cuts[k] as u64, width: (cuts[k + 1] - cuts[k]) as u64 };
                 let (found, probability, rest) = event.choose_part(v, |fraction| {
