@@ -71,7 +71,7 @@ const SAME_PLACE: f64 = 1.0 / 16.0;
 /// Radius of the coarse map in radii of the fine one.
 const COARSE: f64 = 16.0;
 
-/// Places of one pixel that are remembered.
+/// Places of one pixel that are remembered of each density.
 const MOST_PLACES: usize = 8;
 
 impl<const C: usize> Gathered<C> {
@@ -320,7 +320,9 @@ impl<'m, const C: usize> Density<'m, C> {
         let used = into.places_used;
         match places[..used].iter().find(|place| same(place)) {
             Some(place) => into.add_weighted(&place.found, weight),
-            None if used == MOST_PLACES => self.gather(at, weight, of_side, into),
+            None if places[..used].iter().filter(|place| place.density == density).count() == MOST_PLACES => {
+                self.gather(at, weight, of_side, into);
+            }
             None => {
                 if places.len() == used {
                     places.push(Place { density, at: *at, found: Gathered::new(into.by_replicate.len()) });

@@ -119,16 +119,19 @@ pub fn first(film: &Film<1>) -> Part {
 pub fn pixel(scene: &Scene, spec: &CameraSpec, m: u32, radius_m: f64) -> Pixel {
     let photon_lm = scene.emitters.flux_lm() / (f64::from(REPLICATES) * (1u64 << m) as f64);
     let maps = photons(scene, 0..REPLICATES, m, 7);
-    let densities = || maps.each_ref().map(|map| Density::fixed(&scene.geometry, map, photon_lm, radius_m));
+    // A run leaves out the density of no photons at all: that there are none anywhere is no doubt about one place.
+    let densities = |kinds: &[usize]| -> Vec<Density<'_, 1>> {
+        let maps = kinds.iter().map(|k| &maps[*k]).filter(|map| !map.photons().is_empty());
+        maps.map(|map| Density::fixed(&scene.geometry, map, photon_lm, radius_m)).collect()
+    };
     let view = View::new(scene, spec, 11).unwrap();
-    let [caustic, diffuse] = densities();
-    let both = densities();
+    let [caustic, diffuse, both] = [densities(&[0]), densities(&[1]), densities(&[0, 1])];
     let only = |emission: bool, direct: bool| Pass { emission, direct, ..Pass::<1>::emission() };
     let result = Pixel {
         emission: first(&pass(&view, &only(true, false))),
         direct: first(&pass(&view, &only(false, true))),
-        caustic: first(&pass(&view, &Pass::photons(&[caustic], 0..REPLICATES, true))),
-        diffuse: first(&pass(&view, &Pass::photons(&[diffuse], 0..REPLICATES, true))),
+        caustic: first(&pass(&view, &Pass::photons(&caustic, 0..REPLICATES, true))),
+        diffuse: first(&pass(&view, &Pass::photons(&diffuse, 0..REPLICATES, true))),
         all: first(&pass(&view, &Pass::whole(&both, REPLICATES))),
     };
     let sum =
