@@ -409,7 +409,8 @@ impl<'m, const C: usize> Density<'m, C> {
         into: &mut Gathered<C>,
     ) -> (u64, f64) {
         let map = self.coarse.get(at.surface.0 as usize).unwrap_or(self.map);
-        let twice = k.saturating_mul(2);
+        // Where there are no more, no search for more.
+        let twice = k.saturating_mul(2).min(map.photons().len());
         // A little more than the last time, pixels being neighbours; never so much that a dense place is read in vain.
         let guess_m = if into.sought_m > 0.0 { (1.1 * into.sought_m).min(2.0 * guess_m) } else { guess_m };
         let holds = |p: &Photon<C>| footprint.holds(p.primitive, || map.position(p));
@@ -425,8 +426,11 @@ impl<'m, const C: usize> Density<'m, C> {
         into.sought_m = farthest2.sqrt();
         let kth2 = found[k.clamp(1, found.len()) - 1].0;
         let first = kth2.sqrt().max(least);
-        let second =
-            if found.len() == twice { farthest2.sqrt() } else { farthest2.sqrt().max(SECOND * first) };
+        let second = if found.len() == k.saturating_mul(2) {
+            farthest2.sqrt()
+        } else {
+            farthest2.sqrt().max(SECOND * first)
+        };
         let second = second.max(least);
         into.reach_m = first;
         let heights = self.heights(footprint, [first, second]);
