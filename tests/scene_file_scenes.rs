@@ -62,13 +62,18 @@ fn every_scene_reads_without_a_warning() {
         "ball_lens",
         "brushed_reflector",
         "flat_slab",
+        "glass_sphere",
         "opal_cover",
         "pool",
+        "pool_seen",
         "prism",
         "reflector",
+        "ring",
         "room",
         "satin_pane",
         "wavy_glass",
+        "wavy_glass_seen",
+        "wine",
     ];
     assert_eq!(names, all.map(|n| format!("{n}.toml")));
 }
