@@ -111,7 +111,7 @@ impl<const C: usize> PixelSums<C> {
     }
 }
 
-/// A picture in the making: passes add to it ([`super::render`]), [`Self::finish`] makes the picture.
+/// A picture in the making: passes add to it ([`super::render()`]), [`Self::finish`] makes the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sums<const C: usize> {
     pixels: [u32; 2],
