@@ -1,12 +1,13 @@
-//! Nanoseconds per scattering by a table, one thread, against an emission of a table of the same grid; and the time to build
-//! the samplers of a table.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+//! Nanoseconds per scattering by a table, one thread, against an emission of a table of the same grid; the time to read a
+//! table and build its samplers. The last lines are ratios of times taken in turns, which a busy machine disturbs least.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, missing_docs)]
 
 #[path = "../tests/tabulated_support/mod.rs"]
 mod tables;
 
 use std::hint::black_box;
-use std::time::Duration;
+use std::path::Path;
+use std::time::{Duration, Instant};
 
 use caustix::bsdf::tabulated::{Energy, Options};
 use caustix::bsdf::{Bsdf, Grey, Incidence, Outcome, Reflectance, Rgb, Tabulated, Throughput as Carried};
@@ -15,7 +16,7 @@ use caustix::sample::coordinates::{Coordinates, Purpose};
 use caustix::sample::grid::Grid;
 use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
-use caustix::sequence::{Points, to_unit_f64};
+use caustix::sequence::to_unit_f64;
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };
@@ -54,62 +55,104 @@ fn arriving(i: u64) -> Incidence {
     Incidence { direction, facet: DVec3::Z, smooth: DVec3::Z, front: true }
 }
 
-fn scatterings<T: Carried>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, bsdf: &Bsdf, carried: T) {
+/// One batch of scatterings from photon `first` on.
+fn scatter<T: Carried>(bsdf: &Bsdf, carried: T, first: u64) -> DVec3 {
     let points = OwenPoints::new(1, 0);
-    let mut first = 0;
-    group.bench_function(name, |b| {
-        b.iter(|| {
-            let mut sum = DVec3::ZERO;
-            for i in first..first + BATCH {
-                let mut c = Coordinates::new(&points, i, true);
-                if let Outcome::Leaves { direction, .. } =
-                    bsdf.interact(&arriving(i), &mut c, &mut carried.clone())
-                {
-                    sum += direction;
-                }
-            }
-            first = (first + BATCH) % (1 << 24);
-            black_box(sum)
-        });
-    });
+    let mut sum = DVec3::ZERO;
+    for i in first..first + BATCH {
+        let mut c = Coordinates::new(&points, i, true);
+        if let Outcome::Leaves { direction, .. } = bsdf.interact(&arriving(i), &mut c, &mut carried.clone()) {
+            sum += direction;
+        }
+    }
+    sum
 }
 
-/// An emission from one slice of the table: its grid as that of a luminaire.
-fn emissions<P: Points>(group: &mut BenchmarkGroup<'_, WallTime>, data: &LobeData, points: &P) {
+/// One slice of the table as the grid of a luminaire.
+fn luminaire(data: &LobeData) -> Grid {
     let radians = |angles: &[f64]| angles.iter().map(|a| a.to_radians()).collect::<Vec<f64>>();
     let nodes = data.polar_deg.len() * data.azimuth_deg.len();
     let values: Vec<f64> = data.values[..nodes].iter().map(|v| f64::from(*v)).collect();
-    let grid = Grid::new(&radians(&data.polar_deg), &radians(&data.azimuth_deg), &values).unwrap();
-    let mut first = 0;
-    group.bench_function("emission of the same grid", |b| {
-        b.iter(|| {
-            let mut sum = DVec3::ZERO;
-            for i in first..first + BATCH {
-                let mut c = Coordinates::new(points, i, true);
-                let mut u = c.draw_reusable(Purpose::Emission);
-                let cell = c.choose(grid.choice(), &mut u, Purpose::Emission);
-                let u_theta = c.remainder(u, Purpose::EmissionTheta);
-                let u_phi = to_unit_f64(c.draw(Purpose::EmissionPhi));
-                sum += grid.place(cell, u_theta, u_phi, Solver::DEFAULT).direction;
-            }
-            first = (first + BATCH) % (1 << 24);
-            black_box(sum)
-        });
-    });
+    Grid::new(&radians(&data.polar_deg), &radians(&data.azimuth_deg), &values).unwrap()
+}
+
+/// One batch of emissions from photon `first` on.
+fn emit(grid: &Grid, first: u64) -> DVec3 {
+    let points = OwenPoints::new(1, 0);
+    let mut sum = DVec3::ZERO;
+    for i in first..first + BATCH {
+        let mut c = Coordinates::new(&points, i, true);
+        let mut u = c.draw_reusable(Purpose::Emission);
+        let cell = c.choose(grid.choice(), &mut u, Purpose::Emission);
+        let u_theta = c.remainder(u, Purpose::EmissionTheta);
+        let u_phi = to_unit_f64(c.draw(Purpose::EmissionPhi));
+        sum += grid.place(cell, u_theta, u_phi, Solver::DEFAULT).direction;
+    }
+    sum
+}
+
+/// Something that takes a batch of photons.
+type Batch = (&'static str, Box<dyn Fn(u64) -> DVec3>);
+
+/// The emission that is the measure, then everything that is measured by it.
+fn batches() -> Vec<Batch> {
+    fn of<T: Carried + 'static>(bsdf: Bsdf, carried: T) -> Box<dyn Fn(u64) -> DVec3> {
+        Box::new(move |first| scatter(&bsdf, carried, first))
+    }
+    let grey = table(1, Frame::Specular, vec![0.0]);
+    let grid = luminaire(&grey);
+    let lambertian = Bsdf::Lambertian { reflectance: Reflectance::grey(1.0) };
+    let turn = steps(0.0, 360.0, 10.0);
+    vec![
+        ("emission of the same grid", Box::new(move |first| emit(&grid, first))),
+        ("lambertian", of(lambertian, Grey)),
+        ("table, specular frame", of(built(grey), Grey)),
+        ("table, surface frame", of(built(table(1, Frame::Surface, vec![0.0])), Grey)),
+        ("table, anisotropic", of(built(table(1, Frame::Specular, turn)), Grey)),
+        ("table, rgb", of(built(table(3, Frame::Specular, vec![0.0])), Rgb::WHITE)),
+    ]
 }
 
 fn scattering(criterion: &mut Criterion) {
-    let grey = table(1, Frame::Specular, vec![0.0]);
     let mut group = short(criterion, "scattering");
-    emissions(&mut group, &grey, &OwenPoints::new(1, 0));
-    let lambertian = Bsdf::Lambertian { reflectance: Reflectance::grey(1.0) };
-    scatterings(&mut group, "lambertian", &lambertian, Grey);
-    scatterings(&mut group, "table, specular frame", &built(grey), Grey);
-    scatterings(&mut group, "table, surface frame", &built(table(1, Frame::Surface, vec![0.0])), Grey);
-    let turn = steps(0.0, 360.0, 10.0);
-    scatterings(&mut group, "table, anisotropic", &built(table(1, Frame::Specular, turn)), Grey);
-    let rgb = built(table(3, Frame::Specular, vec![0.0]));
-    scatterings(&mut group, "table, rgb", &rgb, Rgb::WHITE);
+    for (name, batch) in batches() {
+        let mut first = 0;
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                first = (first + BATCH) % (1 << 24);
+                black_box(batch(first))
+            });
+        });
+    }
+}
+
+/// Rounds of the comparison in turns.
+const ROUNDS: u64 = 400;
+
+/// Times a round over the emission's in the same round: least and median.
+fn ratios(_: &mut Criterion) {
+    if std::env::args().any(|argument| argument == "--test") {
+        return;
+    }
+    let batches = batches();
+    let mut times = vec![Vec::new(); batches.len()];
+    for round in 0..ROUNDS {
+        for (times, (_, batch)) in times.iter_mut().zip(&batches) {
+            let start = Instant::now();
+            black_box(batch(round * BATCH));
+            times.push(start.elapsed().as_secs_f64());
+        }
+    }
+    let least = |times: &[f64]| times.iter().copied().fold(f64::INFINITY, f64::min);
+    for (of, (name, _)) in times.iter().zip(&batches) {
+        let mut by_round: Vec<f64> = of.iter().zip(&times[0]).map(|(t, emission)| t / emission).collect();
+        by_round.sort_by(f64::total_cmp);
+        let (median, minima) = (by_round[by_round.len() / 2], least(of) / least(&times[0]));
+        let ns = least(of) / BATCH as f64 * 1e9;
+        println!(
+            "{name:26} {median:5.2} emissions (median of {ROUNDS}), {minima:5.2} of minima ({ns:.0} ns)"
+        );
+    }
 }
 
 fn building(criterion: &mut Criterion) {
@@ -123,7 +166,30 @@ fn building(criterion: &mut Criterion) {
     group.bench_function("samplers of a million values", |b| {
         b.iter(|| Tabulated::new(black_box(&table), &options).unwrap());
     });
+    match std::env::var_os("CAUSTIX_TEST_DATA") {
+        Some(data) => measured(&mut group, &Path::new(&data).join("brdf/zemax/IMX455.bsdf")),
+        None => println!("skipped: CAUSTIX_TEST_DATA is not set"),
+    }
 }
 
-criterion_group!(benches, scattering, building);
+/// The largest measured table at hand: read, and its samplers built.
+fn measured(group: &mut BenchmarkGroup<'_, WallTime>, path: &Path) {
+    let options = Options { energy: Energy::Scale, ..Options::default() };
+    let both = || {
+        let table = caustix::scattering::read(path).unwrap();
+        let values: usize = table.lobes.iter().map(|lobe| lobe.values.len()).sum();
+        (Tabulated::new(&table, &options).unwrap().0, values)
+    };
+    let (tabulated, values) = both();
+    let bytes = tabulated.memory_bytes();
+    println!(
+        "{}: {values} values, {bytes} bytes, {:.2} a value",
+        path.display(),
+        bytes as f64 / values as f64
+    );
+    group.throughput(Throughput::Elements(values as u64));
+    group.bench_function("IMX455.bsdf, read and built", |b| b.iter(|| black_box(both())));
+}
+
+criterion_group!(benches, scattering, building, ratios);
 criterion_main!(benches);

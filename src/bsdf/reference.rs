@@ -42,13 +42,19 @@ impl Reference {
     /// fixed one stands in.
     #[inline]
     pub fn tangent(&self, outward: DVec3) -> DVec3 {
+        self.along(outward).normalize()
+    }
+
+    /// The same of any length: angles need no more.
+    #[inline]
+    pub fn along(&self, outward: DVec3) -> DVec3 {
         let along = match *self {
             Self::Along(direction) => direction - direction.dot(outward) * outward,
             Self::Around(axis) => axis.cross(outward),
         };
         // Parallel as far as f64 can tell: rounding is all that is left.
         let parallel = along.length_squared() <= (8.0 * f64::EPSILON) * (8.0 * f64::EPSILON);
-        if parallel { frame_about(outward).x_axis } else { along.normalize() }
+        if parallel { frame_about(outward).x_axis } else { along }
     }
 }
 

@@ -4,6 +4,8 @@
 //! a 64-bit fraction, below 1 by construction because u - T_k < w_k. An event of probability zero owns no integer and
 //! is never chosen.
 
+use crate::sequence::to_unit_f64;
+
 /// A coordinate that serves several discrete events in turn, and the record of how much of it is used up.
 #[derive(Debug, Clone, Copy)]
 pub struct Reusable {
@@ -22,6 +24,9 @@ pub struct Share {
 }
 
 impl Share {
+    /// All fractions.
+    pub const ALL: Self = Self { low: 0, width: 0 };
+
     /// The fraction of the event that leaves this remainder, to the resolution of its width: the inverse of
     /// [`Reusable::take`].
     pub fn invert(self, remainder: u64) -> u64 {
@@ -30,10 +35,60 @@ impl Share {
             width => self.low + ((u128::from(remainder) * u128::from(width)) >> 64) as u64,
         }
     }
+
+    /// The part of all fractions that belongs to the event: its probability.
+    #[inline]
+    pub fn probability(self) -> f64 {
+        if self.width == 0 { 1.0 } else { self.width as f64 / TWO_TO_64 }
+    }
+
+    /// What [`Reusable::take`] leaves of a fraction of the event, for a last use: to 53 bits and below 1.
+    #[inline]
+    pub fn rest(self, bits: u64) -> f64 {
+        match self.width {
+            0 => to_unit_f64(bits),
+            width => below_one((bits - self.low) as f64 / width as f64),
+        }
+    }
+
+    /// A part of this event, chosen by the fraction `v` of it that `find` turns into a part: (what was found, the part's
+    /// probability in this event, what is left of v for a last use).
+    #[inline]
+    pub fn choose_part<R>(self, v: u64, find: impl FnOnce(u64) -> (R, Self)) -> (R, f64, f64) {
+        if self.width == 0 {
+            let (found, part) = find(v);
+            return (found, part.probability(), part.rest(v));
+        }
+        let product = u128::from(v) * u128::from(self.width);
+        let at = self.low + (product >> 64) as u64;
+        let (found, part) = find(at);
+        // The part lies in this event, so it is narrower than all fractions.
+        let (whole, width) = (self.width as f64, part.width as f64);
+        let inside = (at - part.low) as f64 + product as u64 as f64 / TWO_TO_64;
+        (found, width / whole, below_one(inside / width))
+    }
+
+    /// The fraction of this event at which `part` of it leaves `rest`: the inverse of [`Self::choose_part`], to 53 bits.
+    pub fn invert_part(self, part: Self, rest: f64) -> f64 {
+        if part.width == 0 {
+            return rest;
+        }
+        let whole = if self.width == 0 { TWO_TO_64 } else { self.width as f64 };
+        (((part.low - self.low) as f64 + rest * part.width as f64) / whole).min(ALMOST_ONE)
+    }
+}
+
+/// The largest f64 below 1.
+const ALMOST_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
+
+/// A quotient of integers d < w, which may have rounded to 1.
+#[inline]
+fn below_one(quotient: f64) -> f64 {
+    quotient.min(ALMOST_ONE)
 }
 
 /// Of its 64 bits a coordinate must keep at least 24 for the next use: a span of 2^-40.
-const SMALLEST_SPAN: f64 = 1.0 / (1u64 << 40) as f64;
+pub(super) const SMALLEST_SPAN: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl Reusable {
     /// A coordinate of which nothing is used.
@@ -46,6 +101,12 @@ impl Reusable {
     #[inline]
     pub fn bits(&self) -> u64 {
         self.bits
+    }
+
+    /// Product of the probabilities of the events chosen so far.
+    #[inline]
+    pub fn span(&self) -> f64 {
+        self.span
     }
 
     /// Whether fewer than 24 of the 64 bits remain, so that the next use needs a fresh coordinate.
@@ -150,6 +211,37 @@ mod tests {
                 assert_eq!(u128::from(u.bits()), (d << 64) / w);
             }
         }
+    }
+
+    #[test]
+    fn a_part_of_an_event_is_chosen_as_by_exact_division() {
+        // An event and the parts of it, the widths of both far apart; the whole line as an event too.
+        let event = Share { low: 1 << 40, width: (1 << 62) + 12_345 };
+        for event in [event, Share::ALL] {
+            let whole = if event.width == 0 { 1u128 << 64 } else { u128::from(event.width) };
+            let cuts = [0, 1, 1 << 20, whole / 3, whole / 3 + 7, whole / 2, whole];
+            for i in 0..20_000u64 {
+                let v = crate::sequence::hash::mix64(i);
+                let v = [v, 0, u64::MAX, v >> 40][(i % 4) as usize];
+                let at = (u128::from(v) * whole) >> 64;
+                let k = cuts.iter().rposition(|c| *c <= at).unwrap();
+                let part = Share { low: event.low + cuts[k] as u64, width: (cuts[k + 1] - cuts[k]) as u64 };
+                let (found, probability, rest) = event.choose_part(v, |fraction| {
+                    assert_eq!(fraction, event.low + at as u64);
+                    (k, part)
+                });
+                assert_eq!(found, k);
+                let width = u128::from(part.width);
+                assert!((probability / (width as f64 / whole as f64) - 1.0).abs() < 1e-15);
+                // ((v whole / 2^64) - cut) / width in integers, to 2^-60.
+                let behind = (u128::from(v) * whole - (cuts[k] << 64)) / width;
+                let exact = (behind >> 4) as f64 / (1u64 << 60) as f64;
+                assert!((rest - exact).abs() < 1e-15 && rest < 1.0, "{v} in {k}: {rest} {exact}");
+                let back = event.invert_part(part, rest);
+                assert!((back - to_unit_f64(v)).abs() < 1e-15, "{v} in {k}");
+            }
+        }
+        assert!(Share { low: 0, width: u64::MAX }.rest(u64::MAX - 1) < 1.0);
     }
 
     #[test]

@@ -16,6 +16,7 @@ use super::rejection::{Reached, reach};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::solve::Solver;
 use crate::math::trig::sin_cos;
+use crate::sequence::to_unit_f64;
 
 /// Nodes of one slice: 16 times the largest grid seen in the wild.
 pub const MAX_NODES: usize = 1 << 22;
@@ -31,6 +32,11 @@ pub struct CompactGrids {
     nodes: Vec<f32>,
     /// `[slice][row][column]`: the first fraction that belongs to the cell. One of zero flux has that of the next.
     low: Vec<u64>,
+    /// `[slice][row]`: the first fraction that belongs to the row.
+    row_low: Vec<u64>,
+    /// `[slice][slot]`: for each leading bits of u, the row that owns the first fraction with those bits.
+    row_guide: Vec<u32>,
+    row_guide_bits: u32,
     /// `[slice][slot]`: for each leading bits of u, the cell that owns the first fraction with those bits; one more.
     guide: Vec<u32>,
     guide_bits: u32,
@@ -44,6 +50,8 @@ struct Slice {
     integral: f64,
     /// The last cell of positive flux; 0 where there is none.
     last: u32,
+    /// The row of that cell.
+    last_row: u32,
     /// Cells of positive flux: none, one, or more.
     cells: Cells,
     proposals: (f64, f64),
@@ -75,12 +83,16 @@ impl CompactGrids {
         let rows: Vec<Row> = polar.windows(2).map(|w| Row::new(w[0], w[1])).collect();
         let columns: Vec<Column> = azimuth.windows(2).map(|w| Column::new(w[0], w[1])).collect();
         let guide_bits = (rows.len() * columns.len()).ilog2();
+        let row_guide_bits = rows.len().ilog2() + 1;
         Ok(Self {
             masses: rows.iter().map(Row::masses).collect(),
             rows,
             columns,
             nodes: Vec::new(),
             low: Vec::new(),
+            row_low: Vec::new(),
+            row_guide: Vec::new(),
+            row_guide_bits,
             guide: Vec::new(),
             guide_bits,
             slices: Vec::new(),
@@ -91,6 +103,8 @@ impl CompactGrids {
     pub fn reserve(&mut self, slices: usize) {
         self.nodes.reserve_exact(slices * self.node_count());
         self.low.reserve_exact(slices * self.cell_count());
+        self.row_low.reserve_exact(slices * self.rows.len());
+        self.row_guide.reserve_exact(slices << self.row_guide_bits);
         self.guide.reserve_exact(slices * self.guide_count());
         self.slices.reserve_exact(slices);
     }
@@ -129,8 +143,9 @@ impl CompactGrids {
         };
         let last = last.unwrap_or(0);
         let proposals = self.count_proposals(&self.nodes[start..], sum);
-        self.slices.push(Slice { largest, integral, last: last as u32, cells, proposals });
-        self.add_choice(&fluxes, last);
+        let (last, last_row) = (last as u32, (last / self.columns.len()) as u32);
+        self.slices.push(Slice { largest, integral, last, last_row, cells, proposals });
+        self.add_choice(&fluxes, last as usize);
         Ok(self.slices.len() - 1)
     }
 
@@ -151,6 +166,8 @@ impl CompactGrids {
         let Some(widths) = integer_widths(fluxes) else {
             // One cell or none: there is nothing to choose.
             self.low.resize(start + fluxes.len(), 0);
+            self.row_low.resize(self.row_low.len() + self.rows.len(), 0);
+            self.row_guide.resize(self.row_guide.len() + (1 << self.row_guide_bits), 0);
             self.guide.resize(self.guide.len() + self.guide_count(), last as u32);
             return;
         };
@@ -158,6 +175,13 @@ impl CompactGrids {
         for width in widths {
             self.low.push(sum);
             sum = sum.wrapping_add(width);
+        }
+        let first_row = self.row_low.len();
+        self.row_low.extend(self.low[start..].iter().step_by(self.columns.len()));
+        let row_low = &self.row_low[first_row..=first_row + last / self.columns.len()];
+        for slot in 0..1u64 << self.row_guide_bits {
+            let first = slot << (64 - self.row_guide_bits);
+            self.row_guide.push(row_low.partition_point(|l| *l <= first) as u32 - 1);
         }
         let low = &self.low[start..=start + last];
         let shift = 64 - self.guide_bits;
@@ -204,32 +228,74 @@ impl CompactGrids {
         if cells != Cells::Many {
             return last as usize;
         }
+        let cell = self.cell_of(slice, u.bits());
+        u.take(self.share(slice, cell));
+        cell
+    }
+
+    /// The cell that owns a fraction, in a slice with more than one of positive flux.
+    #[inline]
+    fn cell_of(&self, slice: usize, bits: u64) -> usize {
         let low = self.low_of(slice);
-        let bits = u.bits();
         let guide = &self.guide[slice * self.guide_count()..];
         let slot = if self.guide_bits == 0 { 0 } else { (bits >> (64 - self.guide_bits)) as usize };
         let (from, to) = (guide[slot] as usize, guide[slot + 1] as usize);
         // Cells of zero flux share their first fraction with the next one, so the last of equals is the owner.
-        let cell = from + low[from..=to].partition_point(|l| *l <= bits) - 1;
-        u.take(Share { low: low[cell], width: self.width(slice, cell) });
-        cell
+        from + low[from..=to].partition_point(|l| *l <= bits) - 1
+    }
+
+    /// The row that owns a fraction, and what it owns. In a slice with one cell, that has all.
+    #[inline]
+    pub fn row_of(&self, slice: usize, bits: u64) -> (usize, Share) {
+        let Slice { last_row, cells, .. } = self.slices[slice];
+        if cells != Cells::Many {
+            return (last_row as usize, Share::ALL);
+        }
+        let low = &self.row_low[slice * self.rows.len()..][..=last_row as usize];
+        let guide = &self.row_guide[slice << self.row_guide_bits..][..1 << self.row_guide_bits];
+        let mut row = guide[(bits >> (64 - self.row_guide_bits)) as usize] as usize;
+        // As of cells, the last of equals is the owner; rows beyond the last cell of positive flux own nothing.
+        let mut end = low.get(row + 1).copied();
+        while end.is_some_and(|end| end <= bits) {
+            row += 1;
+            end = low.get(row + 1).copied();
+        }
+        (row, Share { low: low[row], width: end.unwrap_or(0).wrapping_sub(low[row]) })
+    }
+
+    /// A column of a row by the flux of its cells on a second coordinate: (column, its probability in the row, what is left of
+    /// the coordinate for the azimuth).
+    #[inline]
+    pub fn column_of(&self, slice: usize, row: usize, share: Share, bits: u64) -> (usize, f64, f64) {
+        let Slice { last, cells, .. } = self.slices[slice];
+        if cells != Cells::Many {
+            return (last as usize - row * self.columns.len(), 1.0, to_unit_f64(bits));
+        }
+        share.choose_part(bits, |at| {
+            let cell = self.cell_of(slice, at);
+            (cell - row * self.columns.len(), self.share(slice, cell))
+        })
+    }
+
+    #[inline]
+    fn row_share(&self, slice: usize, row: usize) -> Share {
+        let low = &self.row_low[slice * self.rows.len()..(slice + 1) * self.rows.len()];
+        let end = low.get(row + 1).copied().unwrap_or(0);
+        Share { low: low[row], width: end.wrapping_sub(low[row]) }
+    }
+
+    /// What a cell up to the last of positive flux owns, in a slice with more than one.
+    #[inline]
+    fn share(&self, slice: usize, cell: usize) -> Share {
+        let low = self.low_of(slice);
+        let end = if cell == self.slices[slice].last as usize { 0 } else { low[cell + 1] };
+        Share { low: low[cell], width: end.wrapping_sub(low[cell]) }
     }
 
     #[inline]
     fn low_of(&self, slice: usize) -> &[u64] {
         let cells = self.cell_count();
         &self.low[slice * cells..(slice + 1) * cells]
-    }
-
-    /// Fractions that belong to a cell up to the last of positive flux, in a slice with more than one.
-    #[inline]
-    fn width(&self, slice: usize, cell: usize) -> u64 {
-        let low = self.low_of(slice);
-        if cell == self.slices[slice].last as usize {
-            low[cell].wrapping_neg()
-        } else {
-            low[cell + 1] - low[cell]
-        }
     }
 
     /// Probability that a cell is chosen.
@@ -240,7 +306,7 @@ impl CompactGrids {
             (Cells::None, _) => 0.0,
             (Cells::One, order) => f64::from(u8::from(order.is_eq())),
             (Cells::Many, std::cmp::Ordering::Greater) => 0.0,
-            (Cells::Many, _) => self.width(slice, cell) as f64 / TWO_TO_64,
+            (Cells::Many, _) => self.share(slice, cell).width as f64 / TWO_TO_64,
         }
     }
 
@@ -248,8 +314,49 @@ impl CompactGrids {
     #[inline]
     pub fn place(&self, slice: usize, cell: usize, u_theta: f64, u_phi: f64, solver: Solver) -> GridPoint {
         let (i, j) = (cell / self.columns.len(), cell % self.columns.len());
-        let cell = self.cell(slice, i, j);
-        GridPoint::in_cell(&cell, &self.rows[i], &self.columns[j], [u_theta, u_phi], solver)
+        self.place_at(slice, [i, j], [u_theta, u_phi], solver).0
+    }
+
+    /// The same for a cell by its row and column, and where in the cell the point lies.
+    #[inline]
+    pub fn place_at(
+        &self,
+        slice: usize,
+        [row, column]: [usize; 2],
+        u: [f64; 2],
+        solver: Solver,
+    ) -> (GridPoint, Located) {
+        let cell = self.cell(slice, row, column);
+        let (point, s, x) = GridPoint::in_cell(&cell, &self.rows[row], &self.columns[column], u, solver);
+        (point, Located { row, column, s, x })
+    }
+
+    /// The point of a slice for two coordinates, of which the first chooses the row and the second the column: u1 goes with the
+    /// polar angle and u2 with the azimuth over the whole slice, so points that are evenly spread in a box of (u1, u2) are so in
+    /// a box of angles.
+    #[inline]
+    pub fn sample_by_row(&self, slice: usize, u1: u64, u2: u64, solver: Solver) -> GridPoint {
+        let (row, share) = self.row_of(slice, u1);
+        let (column, _, u_phi) = self.column_of(slice, row, share, u2);
+        self.place_at(slice, [row, column], [share.rest(u1), u_phi], solver).0
+    }
+
+    /// The coordinates whose sample is (theta, phi) by [`Self::sample_by_row`]; `None` outside the grid and in cells of zero
+    /// flux.
+    pub fn invert_by_row(&self, slice: usize, theta: f64, phi: f64) -> Option<(u64, f64)> {
+        let Located { row: i, column: j, s, x } = self.locate(theta, phi)?;
+        if self.cell_probability(slice, i, j) == 0.0 {
+            return None;
+        }
+        let (cell, row) = (self.cell(slice, i, j), &self.rows[i]);
+        let remainder = to_fraction(cell.theta_cdf(row, s));
+        let u_phi = cell.phi_cdf(row, s, x);
+        if self.is_single(slice) {
+            return Some((remainder, u_phi));
+        }
+        let share = self.row_share(slice, i);
+        let part = self.share(slice, i * self.columns.len() + j);
+        Some((share.invert(remainder), share.invert_part(part, u_phi)))
     }
 
     /// The point of a slice for two coordinates, the first a 64-bit fraction that also chooses the cell.
@@ -257,7 +364,7 @@ impl CompactGrids {
     pub fn sample(&self, slice: usize, u1: u64, u2: f64, solver: Solver) -> GridPoint {
         let mut u = Reusable::fresh(u1);
         let cell = self.choose(slice, &mut u);
-        self.place(slice, cell, crate::sequence::to_unit_f64(u.bits()), u2, solver)
+        self.place(slice, cell, to_unit_f64(u.bits()), u2, solver)
     }
 
     /// The coordinates whose sample is (theta, phi); `None` outside the grid and in cells of zero flux.
@@ -268,14 +375,13 @@ impl CompactGrids {
         }
         let (cell, row) = (self.cell(slice, i, j), &self.rows[i]);
         let u_theta = cell.theta_cdf(row, s);
-        let remainder = if u_theta < 1.0 { (u_theta * TWO_TO_64) as u64 } else { u64::MAX };
+        let remainder = to_fraction(u_theta);
         let u2 = cell.phi_cdf(row, s, x);
         if self.is_single(slice) {
             return Some((remainder, u2));
         }
         let at = i * self.columns.len() + j;
-        let share = Share { low: self.low_of(slice)[at], width: self.width(slice, at) };
-        Some((share.invert(remainder), u2))
+        Some((self.share(slice, at).invert(remainder), u2))
     }
 
     /// The value of a slice at (theta, phi), bilinear; 0 outside the grid.
@@ -388,6 +494,8 @@ impl CompactGrids {
             + self.columns.capacity() * size_of::<Column>()
             + self.nodes.capacity() * size_of::<f32>()
             + self.low.capacity() * size_of::<u64>()
+            + self.row_low.capacity() * size_of::<u64>()
+            + self.row_guide.capacity() * size_of::<u32>()
             + self.guide.capacity() * size_of::<u32>()
             + self.slices.capacity() * size_of::<Slice>()
     }
@@ -432,6 +540,11 @@ impl CompactGrids {
         let corners = self.corners(self.nodes_of(slice), row, column);
         Cell::of_mass(self.mass(row, corners), row as u32, column as u32, corners)
     }
+}
+
+/// A number in [0, 1] as a 64-bit fraction.
+fn to_fraction(u: f64) -> u64 {
+    if u < 1.0 { (u * TWO_TO_64) as u64 } else { u64::MAX }
 }
 
 fn check_angles(polar: &[f64], azimuth: &[f64]) -> Result<()> {

@@ -4,7 +4,7 @@
 //! is drawn; an event with one possible outcome draws none. With renormalisation all discrete events of a photon
 //! share one coordinate until fewer than 24 of its 64 bits are left; without, each draws its own.
 
-use super::choose::{Reusable, TWO_TO_64};
+use super::choose::{Reusable, SMALLEST_SPAN, TWO_TO_64};
 use super::discrete::Discrete;
 use super::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
@@ -88,6 +88,25 @@ pub trait Chooser {
         if u.is_spent() { self.uniform(purpose) } else { to_unit_f64(u.bits()) }
     }
 
+    /// Whether a coordinate goes on after a choice.
+    #[inline]
+    fn reuses(&self) -> bool {
+        true
+    }
+
+    /// A choice among more than one outcome: one more of the photon's events, where these share a coordinate; else on a
+    /// coordinate of this purpose.
+    #[inline]
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        choice(&mut self.reusable(purpose))
+    }
+
+    /// What is left of a coordinate after a choice of this probability, for a last use; a fresh one where too little is.
+    #[inline]
+    fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
+        if probability < SMALLEST_SPAN { self.uniform(purpose) } else { left }
+    }
+
     /// How tables of scattering are sampled.
     #[inline]
     fn sampling(&self) -> Sampling {
@@ -148,6 +167,15 @@ impl<'p, P: Points> Coordinates<'p, P> {
         Reusable::fresh(self.draw(purpose))
     }
 
+    /// The coordinate of discrete events, a fresh one where too little of it is left.
+    #[inline]
+    fn event_coordinate(&mut self) -> Reusable {
+        match self.event {
+            Some(u) if !u.is_spent() => u,
+            _ => self.draw_reusable(Purpose::Event),
+        }
+    }
+
     /// An event of `table` on `u`; a spent coordinate is replaced first.
     #[inline]
     pub fn choose(&mut self, table: &Discrete, u: &mut Reusable, purpose: Purpose) -> usize {
@@ -180,10 +208,7 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
         if probability >= 1.0 {
             return true;
         }
-        let mut u = match self.event {
-            Some(u) if !u.is_spent() => u,
-            _ => self.draw_reusable(Purpose::Event),
-        };
+        let mut u = self.event_coordinate();
         let happened = u.happens(probability);
         self.event = self.reuse.then_some(u);
         happened
@@ -222,6 +247,22 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
     }
 
     #[inline]
+    fn reuses(&self) -> bool {
+        self.reuse
+    }
+
+    #[inline]
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        if !self.reuse {
+            return choice(&mut self.draw_reusable(purpose));
+        }
+        let mut u = self.event_coordinate();
+        let chosen = choice(&mut u);
+        self.event = Some(u);
+        chosen
+    }
+
+    #[inline]
     fn sampling(&self) -> Sampling {
         self.sampling
     }
@@ -243,6 +284,31 @@ mod tests {
         }
         assert_eq!((with.drawn(), without.drawn()), (1, 10));
         assert_eq!(with.drawn_for()[Purpose::Event as usize], 1);
+    }
+
+    #[test]
+    fn a_choice_is_one_more_event_with_reuse_and_has_its_own_coordinate_without() {
+        let points = IndependentPoints::new(1, 0);
+        for (reuse, drawn, label) in [(true, 1, Purpose::Event), (false, 2, Purpose::Scatter)] {
+            let mut c = Coordinates::new(&points, 5, reuse);
+            c.happens(0.9);
+            let left = c.decide(Purpose::Scatter, |u| u.happens(0.5));
+            assert_eq!(c.drawn(), drawn);
+            assert!(c.drawn_for()[label as usize] == 1);
+            // The event's remainder decides, or the photon's second coordinate.
+            let mut first = Reusable::fresh(points.coordinate(5, 0));
+            first.happens(0.9);
+            let mut other = Reusable::fresh(points.coordinate(5, 1));
+            assert_eq!(left, if reuse { &mut first } else { &mut other }.happens(0.5));
+        }
+    }
+
+    #[test]
+    fn too_little_left_of_a_choice_is_replaced() {
+        let points = IndependentPoints::new(1, 0);
+        let mut c = Coordinates::new(&points, 5, true);
+        assert_eq!(c.left(0.3, 2f64.powi(-40), Purpose::Scatter), 0.3);
+        assert_eq!(c.left(0.3, 2f64.powi(-41), Purpose::Scatter), to_unit_f64(points.coordinate(5, 0)));
     }
 
     #[test]

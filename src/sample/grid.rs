@@ -50,7 +50,8 @@ pub struct GridPoint {
 }
 
 impl GridPoint {
-    /// The point of a cell for the continuous coordinates of theta and phi, by inverse functions.
+    /// The point of a cell for the continuous coordinates of theta and phi, by inverse functions: (point, theta less that of the
+    /// near edge, fraction of the column).
     #[inline]
     pub(super) fn in_cell(
         cell: &Cell,
@@ -58,16 +59,17 @@ impl GridPoint {
         column: &Column,
         [u_theta, u_phi]: [f64; 2],
         solver: Solver,
-    ) -> Self {
+    ) -> (Self, f64, f64) {
         let Polar { s, sin, cos, evaluations } = cell.sample_theta(row, u_theta, solver);
         let x = cell.sample_phi(row, s, u_phi);
         let (sin_phi, cos_phi) = column.azimuth(x);
-        Self {
+        let point = Self {
             direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
             theta: row.theta + s,
             phi: column.phi + x * column.width,
             evaluations,
-        }
+        };
+        (point, s, x)
     }
 }
 
@@ -146,7 +148,7 @@ impl Grid {
     #[inline]
     pub fn place(&self, cell: usize, u_theta: f64, u_phi: f64, solver: Solver) -> GridPoint {
         let (cell, row, column) = self.cell(cell);
-        GridPoint::in_cell(cell, row, column, [u_theta, u_phi], solver)
+        GridPoint::in_cell(cell, row, column, [u_theta, u_phi], solver).0
     }
 
     /// A photon's point by inverse functions or by rejection, or `None` where this point of the sequence gives none.

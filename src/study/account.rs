@@ -207,6 +207,16 @@ impl<'p, P: Points> Watched<'p, P> {
         let (tables, table_choices) = (0.0, 0.0);
         Self { inner, decisions: 0.0, shared: 0.0, span: None, continuous: 0.0, tables, table_choices }
     }
+
+    /// An event of this probability on the coordinate of all events.
+    fn share(&mut self, probability: f64) {
+        // Of 64 bits 24 must be left: 40 may be spent.
+        let left = self.span.filter(|span| -span.log2() <= 40.0);
+        if left.is_none() {
+            self.shared += 1.0;
+        }
+        self.span = Some(left.unwrap_or(1.0) * probability);
+    }
 }
 
 impl<P: Points> Chooser for Watched<'_, P> {
@@ -214,12 +224,7 @@ impl<P: Points> Chooser for Watched<'_, P> {
         let happened = self.inner.happens(probability);
         if probability > 0.0 && probability < 1.0 {
             self.decisions += 1.0;
-            // Of 64 bits 24 must be left: 40 may be spent.
-            let left = self.span.filter(|span| -span.log2() <= 40.0);
-            if left.is_none() {
-                self.shared += 1.0;
-            }
-            self.span = Some(left.unwrap_or(1.0) * if happened { probability } else { 1.0 - probability });
+            self.share(if happened { probability } else { 1.0 - probability });
         }
         happened
     }
@@ -230,23 +235,30 @@ impl<P: Points> Chooser for Watched<'_, P> {
     }
 
     fn reusable(&mut self, purpose: Purpose) -> Reusable {
-        // The first coordinate of a table; the second one is asked for as any other.
+        // Only tables ask for these, for two each.
         self.continuous += 1.0;
-        self.tables += 2.0;
+        self.tables += 1.0;
         self.inner.reusable(purpose)
     }
 
-    fn choose_by<R>(
-        &mut self,
-        u: &mut Reusable,
-        purpose: Purpose,
-        choice: impl FnOnce(&mut Reusable) -> R,
-    ) -> R {
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
         self.table_choices += 1.0;
-        self.inner.choose_by(u, purpose, choice)
+        let mut probability = 1.0;
+        let chosen = self.inner.decide(purpose, |u| {
+            let before = u.span();
+            let chosen = choice(u);
+            probability = u.span() / before;
+            chosen
+        });
+        self.share(probability);
+        chosen
     }
 
-    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
-        self.inner.rest(u, purpose)
+    fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
+        // A row and a column: without renormalisation they are one choice, of a cell.
+        if probability < 1.0 {
+            self.table_choices += 0.5;
+        }
+        self.inner.left(left, probability, purpose)
     }
 }

@@ -19,12 +19,12 @@ impl Arrival {
     /// Light from wi (unit, pointing away from the surface) on the side of the unit normal. `tangent` is asked where there
     /// is no plane of incidence: light then counts as coming from its side.
     #[inline]
-    pub fn new(wi: DVec3, normal: DVec3, tangent: impl FnOnce() -> DVec3) -> Self {
+    pub fn new(wi: DVec3, normal: DVec3, along_tangent: impl FnOnce() -> DVec3) -> Self {
         // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
         let cos = wi.dot(normal).clamp(0.0, 1.0);
         let along = wi - cos * normal;
         let sin = along.length();
-        let onward = if sin > 0.0 { along / -sin } else { -tangent() };
+        let onward = if sin > 0.0 { along / -sin } else { -along_tangent().normalize() };
         Self { normal, onward, sin: sin.min(1.0), cos }
     }
 
@@ -34,7 +34,7 @@ impl Arrival {
         libm::atan2(self.sin, self.cos)
     }
 
-    /// phi_i, counter-clockwise about the normal from a tangent.
+    /// phi_i, counter-clockwise about the normal from a tangent of any length.
     #[inline]
     pub fn phi(&self, tangent: DVec3) -> f64 {
         libm::atan2(-self.onward.dot(self.normal.cross(tangent)), -self.onward.dot(tangent))

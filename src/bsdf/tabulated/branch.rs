@@ -1,5 +1,9 @@
-//! Which slice of which lobe scatters a photon, and where to: the discrete choices on the first coordinate and what follows
-//! from them.
+//! Which slice of which lobe scatters a photon, and where to.
+//!
+//! With renormalisation the slice is one of the photon's discrete events, on the coordinate that all of these share, and the
+//! direction has two coordinates to itself: one for row and polar angle, one for column and azimuth. So the direction goes
+//! steadily with both and hardly changes with the slice, and points that fill the unit cube evenly fill the lobe evenly, even
+//! where their number allows only a few strata in each of many dimensions (docs/STUDY.md). Without, each choice has its own coordinate.
 
 use glam::{DMat3, DVec3};
 
@@ -7,12 +11,11 @@ use super::arrival::Arrival;
 use super::layer::{Layer, Mix};
 use crate::math::solve::Solver;
 use crate::sample::choose::{Reusable, Share, TWO_TO_64};
-use crate::sample::compact::CompactGrids;
+use crate::sample::compact::{CompactGrids, Located};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::sample::grid::GridPoint;
 use crate::sample::method::{Rejection, Sampling};
 use crate::scattering::Quantity;
-use crate::sequence::to_unit_f64;
 
 /// The lobes of a face for one incidence: the one that reflects, the one that transmits.
 pub(super) struct Lobes<'a> {
@@ -22,29 +25,67 @@ pub(super) struct Lobes<'a> {
 
 /// What can scatter a photon: a slice, for one channel where there is colour.
 #[derive(Debug, Clone, Copy, Default)]
-struct Branch {
+pub(super) struct Branch {
     weight: f64,
-    slice: u32,
-    lobe: u32,
+    pub slice: u32,
+    pub lobe: u32,
 }
 
-/// Four slices for each of two lobes and three channels.
-const MOST_BRANCHES: usize = 24;
+/// Four slices for each of two lobes.
+const MOST_GREY: usize = 8;
+/// The same for each of three channels.
+const MOST_COLOURED: usize = 24;
 
-/// Every branch of positive weight, in a fixed order.
-struct Branches {
-    list: [Branch; MOST_BRANCHES],
+/// Every branch of positive weight, at most `MOST`, in a fixed order.
+pub(super) struct Branches<const MOST: usize> {
+    list: [Branch; MOST],
     length: usize,
     total: f64,
 }
 
-impl Branches {
-    #[inline]
+impl Branches<MOST_GREY> {
+    /// Adds those of layers that are all grey: the albedo of their mixture.
+    #[inline(always)]
+    pub fn add_grey(&mut self, layers: [Option<&Layer>; 2], theta: f64, phi: f64) -> f64 {
+        let mut albedo = 0.0;
+        for (lobe, layer) in layers.into_iter().enumerate() {
+            let Some(layer) = layer else { continue };
+            let mut sum = 0.0;
+            layer.each_part(theta, phi, |slice, part| {
+                if part > 0.0 {
+                    let weight = part * layer.grids.integral(slice);
+                    self.add(lobe, slice, weight);
+                    sum += weight;
+                }
+            });
+            albedo += sum;
+        }
+        albedo
+    }
+}
+
+impl<const MOST: usize> Branches<MOST> {
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self { list: [Branch::default(); MOST], length: 0, total: 0.0 }
+    }
+
+    /// One of them; `None` where there is none.
+    #[inline(always)]
+    pub fn decide<C: Chooser>(&self, chooser: &mut C) -> Option<Branch> {
+        match self.as_slice() {
+            [] => None,
+            [only] => Some(*only),
+            _ => chooser.decide(Purpose::Scatter, |u| self.choose(u)),
+        }
+    }
+
+    #[inline(always)]
     fn as_slice(&self) -> &[Branch] {
         &self.list[..self.length]
     }
 
-    #[inline]
+    #[inline(always)]
     fn add(&mut self, lobe: usize, slice: usize, weight: f64) {
         if weight > 0.0 {
             self.list[self.length] = Branch { weight, slice: slice as u32, lobe: lobe as u32 };
@@ -53,8 +94,17 @@ impl Branches {
         }
     }
 
+    /// The branches of a lobe for one channel.
+    #[inline(always)]
+    fn add_channel(&mut self, lobe: usize, (layer, mix): &(&Layer, Mix), channel: usize, share: f64) {
+        for (incidence, part) in mix.parts() {
+            let slice = layer.slice(channel, incidence);
+            self.add(lobe, slice, share * part * layer.grids.integral(slice));
+        }
+    }
+
     /// The fractions of each branch in turn, until one satisfies: (branch, its share). The last one owns what is left.
-    #[inline]
+    #[inline(always)]
     fn find(&self, mut is_it: impl FnMut(Branch, Share) -> bool) -> Option<(Branch, Share)> {
         let (last, others) = self.as_slice().split_last()?;
         let scale = TWO_TO_64 / self.total;
@@ -74,7 +124,7 @@ impl Branches {
     }
 
     /// One branch by weight, as one event on `u`.
-    #[inline]
+    #[inline(always)]
     fn choose(&self, u: &mut Reusable) -> Option<Branch> {
         let bits = u.bits();
         let (branch, share) = self.find(|_, share| share.width == 0 || bits - share.low < share.width)?;
@@ -97,8 +147,12 @@ impl<'a> Lobes<'a> {
     /// Parts that are scattered, by channel.
     #[inline]
     pub fn albedo(&self, coloured: bool) -> [f64; 3] {
-        let of = |channel| -> f64 {
-            self.lobes.iter().flatten().map(|(layer, mix)| layer.albedo(mix, channel)).sum()
+        let of = |channel| {
+            let mut sum = 0.0;
+            for (layer, mix) in self.lobes.iter().flatten() {
+                sum += layer.albedo(mix, channel);
+            }
+            sum
         };
         if coloured { [of(0), of(1), of(2)] } else { [of(0); 3] }
     }
@@ -114,7 +168,7 @@ impl<'a> Lobes<'a> {
         let Some((layer, mix)) = &self.lobes[quantity as usize] else { return [0.0; 3] };
         let (theta, phi) = angles(&self.axes(layer), wo);
         let Some(at) = layer.grids.locate(theta, phi) else { return [0.0; 3] };
-        [0, 1, 2].map(|channel| layer.value_at(mix, channel, &at))
+        layer.values_at(mix, &at)
     }
 
     #[inline]
@@ -123,63 +177,49 @@ impl<'a> Lobes<'a> {
     }
 
     /// Every branch. `shares` are those of the channels; `None` where all are grey.
-    #[inline]
-    fn branches(&self, shares: Option<[f64; 3]>) -> Branches {
-        let mut all = Branches { list: [Branch::default(); MOST_BRANCHES], length: 0, total: 0.0 };
+    #[inline(always)]
+    fn branches<const MOST: usize>(&self, shares: Option<[f64; 3]>) -> Branches<MOST> {
+        let mut all = Branches::none();
         for (lobe, found) in self.lobes.iter().enumerate() {
-            let Some((layer, mix)) = found else { continue };
-            let mut add = |channel: usize, share: f64| {
-                for (incidence, part) in mix.parts() {
-                    let slice = layer.slice(channel, incidence);
-                    all.add(lobe, slice, share * part * layer.grids.integral(slice));
-                }
-            };
+            let Some(found) = found else { continue };
             match shares {
-                None => add(0, 1.0),
+                None => all.add_channel(lobe, found, 0, 1.0),
                 // A grey lobe beside a coloured one is the same for all channels: one branch with all shares.
-                Some(shares) if layer.channels == 1 => add(0, shares[0] + shares[1] + shares[2]),
-                Some(shares) => (0..3).for_each(|channel| add(channel, shares[channel])),
+                Some(shares) if found.0.channels == 1 => {
+                    all.add_channel(lobe, found, 0, shares[0] + shares[1] + shares[2]);
+                }
+                Some(shares) => (0..3).for_each(|k| all.add_channel(lobe, found, k, shares[k])),
             }
         }
         all
     }
 
     /// A direction of light that is scattered; `None` where nothing is.
-    #[inline]
+    #[inline(always)]
     pub fn sample<C: Chooser>(&self, shares: Option<[f64; 3]>, chooser: &mut C) -> Option<Left> {
-        let branches = self.branches(shares);
-        let mut u = chooser.reusable(Purpose::Scatter);
-        let branch = match branches.as_slice() {
-            [] => return None,
-            [only] => *only,
-            _ => chooser.choose_by(&mut u, Purpose::Scatter, |u| branches.choose(u))?,
+        let branch = if shares.is_none() {
+            self.branches::<MOST_GREY>(None).decide(chooser)?
+        } else {
+            self.branches::<MOST_COLOURED>(shares).decide(chooser)?
         };
         let (layer, mix) = self.lobes[branch.lobe as usize].as_ref()?;
-        let slice = branch.slice as usize;
-        let point = match chooser.sampling() {
-            Sampling::Inverse(solver) => invert(&layer.grids, slice, u, solver, chooser),
-            Sampling::Rejection(rejection) => reject(&layer.grids, slice, u, rejection, chooser),
-        };
-        let wo = self.axes(layer) * point.direction;
-        let values = if shares.is_some() {
-            let at = layer.grids.locate(point.theta, point.phi);
-            at.map_or([0.0; 3], |at| [0, 1, 2].map(|channel| layer.value_at(mix, channel, &at)))
-        } else {
-            [1.0; 3]
-        };
-        let below_horizon = wo.dot(self.arrival.outgoing_normal(layer.quantity)) <= 0.0;
-        Some(Left { wo, quantity: layer.quantity, below_horizon, values })
+        let (mut left, point, at) = leave(self.arrival, layer, branch.slice as usize, chooser);
+        if shares.is_some() {
+            let at = at.or_else(|| layer.grids.locate(point.theta, point.phi));
+            left.values = at.map_or([0.0; 3], |at| layer.values_at(mix, &at));
+        }
+        Some(left)
     }
 
     /// The coordinates of every branch that gives wo.
     pub fn invert(&self, shares: Option<[f64; 3]>, quantity: Quantity, wo: DVec3) -> Vec<(u64, f64)> {
         let mut found = Vec::new();
-        let _ = self.branches(shares).find(|branch, share| {
+        let _ = self.branches::<MOST_COLOURED>(shares).find(|branch, share| {
             if let Some((layer, _)) =
                 self.lobes[branch.lobe as usize].as_ref().filter(|(l, _)| l.quantity == quantity)
             {
                 let (theta, phi) = angles(&self.axes(layer), wo);
-                let inside = layer.grids.invert(branch.slice as usize, theta, phi);
+                let inside = layer.grids.invert_by_row(branch.slice as usize, theta, phi);
                 found.extend(inside.map(|(remainder, u2)| (share.invert(remainder), u2)));
             }
             false // All of them.
@@ -190,7 +230,7 @@ impl<'a> Lobes<'a> {
     /// Proposals of white light, times the chance of being scattered: (inside cells, against a slice's largest).
     pub fn proposals(&self, shares: Option<[f64; 3]>) -> (f64, f64) {
         let (mut cells, mut table) = (0.0, 0.0);
-        for branch in self.branches(shares).as_slice() {
+        for branch in self.branches::<MOST_COLOURED>(shares).as_slice() {
             if let Some((layer, _)) = &self.lobes[branch.lobe as usize] {
                 let (in_cell, in_table) = layer.grids.proposals(branch.slice as usize);
                 cells += branch.weight * in_cell;
@@ -201,19 +241,47 @@ impl<'a> Lobes<'a> {
     }
 }
 
-/// By inverse functions: the cell on what is left of `u`, then theta, then phi on a coordinate of its own.
-#[inline]
+/// A direction from a slice, the point of its grid, and where in the grid that lies if that is known. The values are still to be
+/// told.
+#[inline(always)]
+pub(super) fn leave<C: Chooser>(
+    arrival: &Arrival,
+    layer: &Layer,
+    slice: usize,
+    chooser: &mut C,
+) -> (Left, GridPoint, Option<Located>) {
+    let (point, at) = match chooser.sampling() {
+        Sampling::Inverse(solver) => invert(&layer.grids, slice, solver, chooser),
+        Sampling::Rejection(rejection) => (reject(&layer.grids, slice, rejection, chooser), None),
+    };
+    let wo = arrival.axes(layer.frame, layer.quantity) * point.direction;
+    let below_horizon = wo.dot(arrival.outgoing_normal(layer.quantity)) <= 0.0;
+    (Left { wo, quantity: layer.quantity, below_horizon, values: [1.0; 3] }, point, at)
+}
+
+/// By inverse functions. Where a coordinate goes on after a choice, one serves for the row and theta, the other for the column
+/// and phi; else the cell has a coordinate of its own.
+#[inline(always)]
 fn invert<C: Chooser>(
     grids: &CompactGrids,
     slice: usize,
-    mut u: Reusable,
     solver: Solver,
     chooser: &mut C,
-) -> GridPoint {
+) -> (GridPoint, Option<Located>) {
+    let mut u = chooser.reusable(Purpose::Scatter);
+    if chooser.reuses() {
+        let v = chooser.reusable(Purpose::Scatter);
+        let (row, share) = grids.row_of(slice, u.bits());
+        let u_theta = chooser.left(share.rest(u.bits()), share.probability(), Purpose::Scatter);
+        let (column, probability, rest) = grids.column_of(slice, row, share, v.bits());
+        let u_phi = chooser.left(rest, probability, Purpose::Scatter);
+        let (point, at) = grids.place_at(slice, [row, column], [u_theta, u_phi], solver);
+        return (point, Some(at));
+    }
     let cell = choose_cell(grids, slice, &mut u, chooser);
     let u_theta = chooser.rest(u, Purpose::Scatter);
     let u_phi = chooser.uniform(Purpose::Scatter);
-    grids.place(slice, cell, u_theta, u_phi, solver)
+    (grids.place(slice, cell, u_theta, u_phi, solver), None)
 }
 
 #[inline]
@@ -230,10 +298,10 @@ fn choose_cell<C: Chooser>(grids: &CompactGrids, slice: usize, u: &mut Reusable,
 fn reject<C: Chooser>(
     grids: &CompactGrids,
     slice: usize,
-    mut u: Reusable,
     rejection: Rejection,
     chooser: &mut C,
 ) -> GridPoint {
+    let mut u = chooser.reusable(Purpose::Scatter);
     let cell = match rejection {
         Rejection::Cell => Some(choose_cell(grids, slice, &mut u, chooser)),
         Rejection::Table | Rejection::NextPoint => None,
@@ -258,11 +326,17 @@ fn angles(axes: &DMat3, wo: DVec3) -> (f64, f64) {
     (libm::atan2(libm::hypot(d.x, d.y), d.z), libm::atan2(d.y, d.x))
 }
 
-/// Two given coordinates.
+/// Two given coordinates, the first of which chooses the slice too.
 pub(super) struct Given {
-    pub u1: u64,
-    pub u2: f64,
-    pub solver: Solver,
+    u1: Option<Reusable>,
+    u2: f64,
+    solver: Solver,
+}
+
+impl Given {
+    pub fn new(u1: u64, u2: f64, solver: Solver) -> Self {
+        Self { u1: Some(Reusable::fresh(u1)), u2, solver }
+    }
 }
 
 impl Chooser for Given {
@@ -275,15 +349,19 @@ impl Chooser for Given {
     }
 
     fn reusable(&mut self, _: Purpose) -> Reusable {
-        Reusable::fresh(self.u1)
+        self.u1.take().unwrap_or(Reusable::fresh((self.u2 * TWO_TO_64) as u64))
     }
 
-    fn choose_by<R>(&mut self, u: &mut Reusable, _: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
-        choice(u)
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        let mut u = self.reusable(purpose);
+        let chosen = choice(&mut u);
+        self.u1 = Some(u);
+        chosen
     }
 
-    fn rest(&mut self, u: Reusable, _: Purpose) -> f64 {
-        to_unit_f64(u.bits())
+    /// However little is left: there is no other.
+    fn left(&mut self, left: f64, _: f64, _: Purpose) -> f64 {
+        left
     }
 
     fn sampling(&self) -> Sampling {

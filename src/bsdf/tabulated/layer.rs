@@ -25,15 +25,23 @@ pub(super) struct Layer {
 /// Incidences of the table and how much each counts; the weights sum to 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Mix {
-    parts: [(usize, f64); 4],
-    length: usize,
+    parts: [(u32, f64); 4],
+    length: u32,
 }
 
 impl Mix {
     /// (incidence, weight).
-    #[inline]
-    pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
-        self.parts.into_iter().take(self.length)
+    #[inline(always)]
+    pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.parts.iter().take(self.length as usize).map(|(incidence, weight)| (*incidence as usize, *weight))
+    }
+
+    #[inline(always)]
+    fn add(&mut self, incidence: usize, weight: f64) {
+        if weight > 0.0 {
+            self.parts[self.length as usize & 3] = (incidence as u32, weight);
+            self.length += 1;
+        }
     }
 }
 
@@ -85,22 +93,27 @@ impl Layer {
     /// The slices for an incidence.
     #[inline]
     pub fn mix(&self, theta: f64, phi: f64) -> Mix {
+        let mut mix = Mix { parts: [(0, 0.0); 4], length: 0 };
+        self.each_part(theta, phi, |incidence, weight| mix.add(incidence, weight));
+        mix
+    }
+
+    /// Each incidence about this one, at most four, and its weight, which may be zero (and the incidence then none).
+    #[inline(always)]
+    pub fn each_part(&self, theta: f64, phi: f64, mut part: impl FnMut(usize, f64)) {
         let (i, t) = bracket(&self.theta_i, theta);
-        let (j, p) = if self.phi_i.len() == 1 { (0, 0.0) } else { self.azimuth_bracket(phi) };
+        if self.phi_i.len() == 1 {
+            part(i, 1.0 - t);
+            part(i + 1, t);
+            return;
+        }
+        let (j, p) = self.azimuth_bracket(phi);
         let thetas = self.theta_i.len();
         let first = j * thetas + i;
-        let mut mix = Mix { parts: [(first, 1.0); 4], length: 0 };
-        let mut add = |slice: usize, weight: f64| {
-            if weight > 0.0 {
-                mix.parts[mix.length] = (slice, weight);
-                mix.length += 1;
-            }
-        };
-        add(first, (1.0 - t) * (1.0 - p));
-        add(first + 1, t * (1.0 - p));
-        add(first + thetas, (1.0 - t) * p);
-        add(first + thetas + 1, t * p);
-        mix
+        part(first, (1.0 - t) * (1.0 - p));
+        part(first + 1, t * (1.0 - p));
+        part(first + thetas, (1.0 - t) * p);
+        part(first + thetas + 1, t * p);
     }
 
     fn azimuth_bracket(&self, phi: f64) -> (usize, f64) {
@@ -116,15 +129,26 @@ impl Layer {
     }
 
     /// Integral of f cos(theta_o) of a channel for a mixture: the part of the light that is scattered.
-    #[inline]
+    #[inline(always)]
     pub fn albedo(&self, mix: &Mix, channel: usize) -> f64 {
-        mix.parts().map(|(k, weight)| weight * self.grids.integral(self.slice(channel, k))).sum()
+        let mut sum = 0.0;
+        for (k, weight) in mix.parts() {
+            sum += weight * self.grids.integral(self.slice(channel, k));
+        }
+        sum
     }
 
-    /// g of a channel for a mixture at a scattered direction.
+    /// g by channel for a mixture at a scattered direction.
     #[inline]
-    pub fn value_at(&self, mix: &Mix, channel: usize, at: &Located) -> f64 {
-        mix.parts().map(|(k, weight)| weight * self.grids.value_at(self.slice(channel, k), at)).sum()
+    pub fn values_at(&self, mix: &Mix, at: &Located) -> [f64; 3] {
+        let of = |channel| {
+            let mut sum = 0.0;
+            for (k, weight) in mix.parts() {
+                sum += weight * self.grids.value_at(self.slice(channel, k), at);
+            }
+            sum
+        };
+        if self.channels == 1 { [of(0); 3] } else { [of(0), of(1), of(2)] }
     }
 }
 
