@@ -34,6 +34,9 @@ pub struct CompactGrids {
     low: Vec<u64>,
     /// `[slice][row]`: the first fraction that belongs to the row.
     row_low: Vec<u64>,
+    /// `[slice][slot]`: for each leading bits of u, the row that owns the first fraction with those bits.
+    row_guide: Vec<u32>,
+    row_guide_bits: u32,
     /// `[slice][slot]`: for each leading bits of u, the cell that owns the first fraction with those bits; one more.
     guide: Vec<u32>,
     guide_bits: u32,
@@ -80,6 +83,7 @@ impl CompactGrids {
         let rows: Vec<Row> = polar.windows(2).map(|w| Row::new(w[0], w[1])).collect();
         let columns: Vec<Column> = azimuth.windows(2).map(|w| Column::new(w[0], w[1])).collect();
         let guide_bits = (rows.len() * columns.len()).ilog2();
+        let row_guide_bits = rows.len().ilog2() + 1;
         Ok(Self {
             masses: rows.iter().map(Row::masses).collect(),
             rows,
@@ -87,6 +91,8 @@ impl CompactGrids {
             nodes: Vec::new(),
             low: Vec::new(),
             row_low: Vec::new(),
+            row_guide: Vec::new(),
+            row_guide_bits,
             guide: Vec::new(),
             guide_bits,
             slices: Vec::new(),
@@ -98,6 +104,7 @@ impl CompactGrids {
         self.nodes.reserve_exact(slices * self.node_count());
         self.low.reserve_exact(slices * self.cell_count());
         self.row_low.reserve_exact(slices * self.rows.len());
+        self.row_guide.reserve_exact(slices << self.row_guide_bits);
         self.guide.reserve_exact(slices * self.guide_count());
         self.slices.reserve_exact(slices);
     }
@@ -160,6 +167,7 @@ impl CompactGrids {
             // One cell or none: there is nothing to choose.
             self.low.resize(start + fluxes.len(), 0);
             self.row_low.resize(self.row_low.len() + self.rows.len(), 0);
+            self.row_guide.resize(self.row_guide.len() + (1 << self.row_guide_bits), 0);
             self.guide.resize(self.guide.len() + self.guide_count(), last as u32);
             return;
         };
@@ -168,7 +176,13 @@ impl CompactGrids {
             self.low.push(sum);
             sum = sum.wrapping_add(width);
         }
+        let first_row = self.row_low.len();
         self.row_low.extend(self.low[start..].iter().step_by(self.columns.len()));
+        let row_low = &self.row_low[first_row..=first_row + last / self.columns.len()];
+        for slot in 0..1u64 << self.row_guide_bits {
+            let first = slot << (64 - self.row_guide_bits);
+            self.row_guide.push(row_low.partition_point(|l| *l <= first) as u32 - 1);
+        }
         let low = &self.low[start..=start + last];
         let shift = 64 - self.guide_bits;
         for slot in 0..1u64 << self.guide_bits {
@@ -237,10 +251,16 @@ impl CompactGrids {
         if cells != Cells::Many {
             return (last_row as usize, Share::ALL);
         }
-        // As of cells, the last of equals is the owner; rows beyond the last cell of positive flux own nothing.
         let low = &self.row_low[slice * self.rows.len()..][..=last_row as usize];
-        let row = low.partition_point(|l| *l <= bits) - 1;
-        (row, self.row_share(slice, row))
+        let guide = &self.row_guide[slice << self.row_guide_bits..][..1 << self.row_guide_bits];
+        let mut row = guide[(bits >> (64 - self.row_guide_bits)) as usize] as usize;
+        // As of cells, the last of equals is the owner; rows beyond the last cell of positive flux own nothing.
+        let mut end = low.get(row + 1).copied();
+        while end.is_some_and(|end| end <= bits) {
+            row += 1;
+            end = low.get(row + 1).copied();
+        }
+        (row, Share { low: low[row], width: end.unwrap_or(0).wrapping_sub(low[row]) })
     }
 
     /// A column of a row by the flux of its cells on a second coordinate: (column, its probability in the row, what is left of
@@ -264,26 +284,18 @@ impl CompactGrids {
         Share { low: low[row], width: end.wrapping_sub(low[row]) }
     }
 
+    /// What a cell up to the last of positive flux owns, in a slice with more than one.
     #[inline]
     fn share(&self, slice: usize, cell: usize) -> Share {
-        Share { low: self.low_of(slice)[cell], width: self.width(slice, cell) }
+        let low = self.low_of(slice);
+        let end = if cell == self.slices[slice].last as usize { 0 } else { low[cell + 1] };
+        Share { low: low[cell], width: end.wrapping_sub(low[cell]) }
     }
 
     #[inline]
     fn low_of(&self, slice: usize) -> &[u64] {
         let cells = self.cell_count();
         &self.low[slice * cells..(slice + 1) * cells]
-    }
-
-    /// Fractions that belong to a cell up to the last of positive flux, in a slice with more than one.
-    #[inline]
-    fn width(&self, slice: usize, cell: usize) -> u64 {
-        let low = self.low_of(slice);
-        if cell == self.slices[slice].last as usize {
-            low[cell].wrapping_neg()
-        } else {
-            low[cell + 1] - low[cell]
-        }
     }
 
     /// Probability that a cell is chosen.
@@ -294,7 +306,7 @@ impl CompactGrids {
             (Cells::None, _) => 0.0,
             (Cells::One, order) => f64::from(u8::from(order.is_eq())),
             (Cells::Many, std::cmp::Ordering::Greater) => 0.0,
-            (Cells::Many, _) => self.width(slice, cell) as f64 / TWO_TO_64,
+            (Cells::Many, _) => self.share(slice, cell).width as f64 / TWO_TO_64,
         }
     }
 
@@ -483,6 +495,7 @@ impl CompactGrids {
             + self.nodes.capacity() * size_of::<f32>()
             + self.low.capacity() * size_of::<u64>()
             + self.row_low.capacity() * size_of::<u64>()
+            + self.row_guide.capacity() * size_of::<u32>()
             + self.guide.capacity() * size_of::<u32>()
             + self.slices.capacity() * size_of::<Slice>()
     }

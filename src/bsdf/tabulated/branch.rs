@@ -25,10 +25,10 @@ pub(super) struct Lobes<'a> {
 
 /// What can scatter a photon: a slice, for one channel where there is colour.
 #[derive(Debug, Clone, Copy, Default)]
-struct Branch {
+pub(super) struct Branch {
     weight: f64,
-    slice: u32,
-    lobe: u32,
+    pub slice: u32,
+    pub lobe: u32,
 }
 
 /// Four slices for each of two lobes.
@@ -37,13 +37,49 @@ const MOST_GREY: usize = 8;
 const MOST_COLOURED: usize = 24;
 
 /// Every branch of positive weight, at most `MOST`, in a fixed order.
-struct Branches<const MOST: usize> {
+pub(super) struct Branches<const MOST: usize> {
     list: [Branch; MOST],
     length: usize,
     total: f64,
 }
 
+impl Branches<MOST_GREY> {
+    /// Adds those of layers that are all grey: the albedo of their mixture.
+    #[inline(always)]
+    pub fn add_grey(&mut self, layers: [Option<&Layer>; 2], theta: f64, phi: f64) -> f64 {
+        let mut albedo = 0.0;
+        for (lobe, layer) in layers.into_iter().enumerate() {
+            let Some(layer) = layer else { continue };
+            let mut sum = 0.0;
+            layer.each_part(theta, phi, |slice, part| {
+                if part > 0.0 {
+                    let weight = part * layer.grids.integral(slice);
+                    self.add(lobe, slice, weight);
+                    sum += weight;
+                }
+            });
+            albedo += sum;
+        }
+        albedo
+    }
+}
+
 impl<const MOST: usize> Branches<MOST> {
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self { list: [Branch::default(); MOST], length: 0, total: 0.0 }
+    }
+
+    /// One of them; `None` where there is none.
+    #[inline(always)]
+    pub fn decide<C: Chooser>(&self, chooser: &mut C) -> Option<Branch> {
+        match self.as_slice() {
+            [] => None,
+            [only] => Some(*only),
+            _ => chooser.decide(Purpose::Scatter, |u| self.choose(u)),
+        }
+    }
+
     #[inline(always)]
     fn as_slice(&self) -> &[Branch] {
         &self.list[..self.length]
@@ -143,7 +179,7 @@ impl<'a> Lobes<'a> {
     /// Every branch. `shares` are those of the channels; `None` where all are grey.
     #[inline(always)]
     fn branches<const MOST: usize>(&self, shares: Option<[f64; 3]>) -> Branches<MOST> {
-        let mut all = Branches { list: [Branch::default(); MOST], length: 0, total: 0.0 };
+        let mut all = Branches::none();
         for (lobe, found) in self.lobes.iter().enumerate() {
             let Some(found) = found else { continue };
             match shares {
@@ -158,44 +194,21 @@ impl<'a> Lobes<'a> {
         all
     }
 
-    /// One of the branches; `None` where nothing is scattered.
-    #[inline(always)]
-    fn branch<C: Chooser, const MOST: usize>(
-        &self,
-        shares: Option<[f64; 3]>,
-        chooser: &mut C,
-    ) -> Option<Branch> {
-        let branches = self.branches::<MOST>(shares);
-        match branches.as_slice() {
-            [] => None,
-            [only] => Some(*only),
-            _ => chooser.decide(Purpose::Scatter, |u| branches.choose(u)),
-        }
-    }
-
     /// A direction of light that is scattered; `None` where nothing is.
     #[inline(always)]
     pub fn sample<C: Chooser>(&self, shares: Option<[f64; 3]>, chooser: &mut C) -> Option<Left> {
         let branch = if shares.is_none() {
-            self.branch::<C, MOST_GREY>(None, chooser)?
+            self.branches::<MOST_GREY>(None).decide(chooser)?
         } else {
-            self.branch::<C, MOST_COLOURED>(shares, chooser)?
+            self.branches::<MOST_COLOURED>(shares).decide(chooser)?
         };
         let (layer, mix) = self.lobes[branch.lobe as usize].as_ref()?;
-        let slice = branch.slice as usize;
-        let (point, at) = match chooser.sampling() {
-            Sampling::Inverse(solver) => invert(&layer.grids, slice, solver, chooser),
-            Sampling::Rejection(rejection) => (reject(&layer.grids, slice, rejection, chooser), None),
-        };
-        let wo = self.axes(layer) * point.direction;
-        let values = if shares.is_some() {
+        let (mut left, point, at) = leave(self.arrival, layer, branch.slice as usize, chooser);
+        if shares.is_some() {
             let at = at.or_else(|| layer.grids.locate(point.theta, point.phi));
-            at.map_or([0.0; 3], |at| layer.values_at(mix, &at))
-        } else {
-            [1.0; 3]
-        };
-        let below_horizon = wo.dot(self.arrival.outgoing_normal(layer.quantity)) <= 0.0;
-        Some(Left { wo, quantity: layer.quantity, below_horizon, values })
+            left.values = at.map_or([0.0; 3], |at| layer.values_at(mix, &at));
+        }
+        Some(left)
     }
 
     /// The coordinates of every branch that gives wo.
@@ -228,9 +241,27 @@ impl<'a> Lobes<'a> {
     }
 }
 
+/// A direction from a slice, the point of its grid, and where in the grid that lies if that is known. The values are still to be
+/// told.
+#[inline(always)]
+pub(super) fn leave<C: Chooser>(
+    arrival: &Arrival,
+    layer: &Layer,
+    slice: usize,
+    chooser: &mut C,
+) -> (Left, GridPoint, Option<Located>) {
+    let (point, at) = match chooser.sampling() {
+        Sampling::Inverse(solver) => invert(&layer.grids, slice, solver, chooser),
+        Sampling::Rejection(rejection) => (reject(&layer.grids, slice, rejection, chooser), None),
+    };
+    let wo = arrival.axes(layer.frame, layer.quantity) * point.direction;
+    let below_horizon = wo.dot(arrival.outgoing_normal(layer.quantity)) <= 0.0;
+    (Left { wo, quantity: layer.quantity, below_horizon, values: [1.0; 3] }, point, at)
+}
+
 /// By inverse functions. Where a coordinate goes on after a choice, one serves for the row and theta, the other for the column
 /// and phi; else the cell has a coordinate of its own.
-#[inline]
+#[inline(always)]
 fn invert<C: Chooser>(
     grids: &CompactGrids,
     slice: usize,

@@ -93,21 +93,27 @@ impl Layer {
     /// The slices for an incidence.
     #[inline]
     pub fn mix(&self, theta: f64, phi: f64) -> Mix {
-        let (i, t) = bracket(&self.theta_i, theta);
         let mut mix = Mix { parts: [(0, 0.0); 4], length: 0 };
+        self.each_part(theta, phi, |incidence, weight| mix.add(incidence, weight));
+        mix
+    }
+
+    /// Each incidence about this one, at most four, and its weight, which may be zero (and the incidence then none).
+    #[inline(always)]
+    pub fn each_part(&self, theta: f64, phi: f64, mut part: impl FnMut(usize, f64)) {
+        let (i, t) = bracket(&self.theta_i, theta);
         if self.phi_i.len() == 1 {
-            mix.add(i, 1.0 - t);
-            mix.add(i + 1, t);
-            return mix;
+            part(i, 1.0 - t);
+            part(i + 1, t);
+            return;
         }
         let (j, p) = self.azimuth_bracket(phi);
         let thetas = self.theta_i.len();
         let first = j * thetas + i;
-        mix.add(first, (1.0 - t) * (1.0 - p));
-        mix.add(first + 1, t * (1.0 - p));
-        mix.add(first + thetas, (1.0 - t) * p);
-        mix.add(first + thetas + 1, t * p);
-        mix
+        part(first, (1.0 - t) * (1.0 - p));
+        part(first + 1, t * (1.0 - p));
+        part(first + thetas, (1.0 - t) * p);
+        part(first + thetas + 1, t * p);
     }
 
     fn azimuth_bracket(&self, phi: f64) -> (usize, f64) {

@@ -36,7 +36,7 @@ use crate::scattering::{Quantity, ScatterTable};
 use crate::units::LUMINANCE_OF_RGB;
 
 use arrival::Arrival;
-use branch::{Given, Lobes};
+use branch::{Branches, Given, Left, Lobes};
 use layer::Layer;
 
 /// What is done about albedos above 1.
@@ -183,10 +183,17 @@ impl Tabulated {
         cos * x + sin * outward.cross(x)
     }
 
-    #[inline]
-    fn lobes<'a>(&'a self, face: &Face, arrival: &'a Arrival, along: impl FnOnce() -> DVec3) -> Lobes<'a> {
+    /// (theta_i, phi_i), as far as they matter.
+    #[inline(always)]
+    fn angles(face: &Face, arrival: &Arrival, along: impl FnOnce() -> DVec3) -> (f64, f64) {
         let theta = if face.has_angles { arrival.theta() } else { 0.0 };
         let phi = if face.has_azimuths { arrival.phi(along()) } else { 0.0 };
+        (theta, phi)
+    }
+
+    #[inline]
+    fn lobes<'a>(&'a self, face: &Face, arrival: &'a Arrival, along: impl FnOnce() -> DVec3) -> Lobes<'a> {
+        let (theta, phi) = Self::angles(face, arrival, along);
         let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
         Lobes { arrival, lobes: face.layers.map(layer) }
     }
@@ -202,37 +209,89 @@ impl Tabulated {
         let face = self.face(at.front);
         let along = || self.along(if at.front { at.facet } else { -at.facet });
         let arrival = Arrival::new(-at.direction, at.facet, along);
-        let lobes = self.lobes(face, &arrival, along);
-        let albedo = lobes.albedo(face.coloured);
-        let fate = if face.coloured || face.rest.is_some() {
-            carried.scatter(albedo, face.rest.is_some(), chooser)
-        } else if carried.reflect(&Reflectance::grey(albedo[0]), chooser) {
+        let angles = Self::angles(face, &arrival, along);
+        if face.coloured {
+            self.interact_coloured(face, &arrival, angles, chooser, carried)
+        } else {
+            self.interact_grey(face, &arrival, angles, chooser, carried)
+        }
+    }
+
+    #[inline(always)]
+    fn interact_grey<C: Chooser, T: Throughput>(
+        &self,
+        face: &Face,
+        arrival: &Arrival,
+        (theta, phi): (f64, f64),
+        chooser: &mut C,
+        carried: &mut T,
+    ) -> Outcome {
+        let layers = face.layers.map(|k| k.map(|k| &self.layers[k]));
+        let mut branches = Branches::none();
+        let albedo = branches.add_grey(layers, theta, phi);
+        let fate = if face.rest.is_some() {
+            carried.scatter([albedo; 3], true, chooser)
+        } else if carried.reflect(&Reflectance::grey(albedo), chooser) {
             Fate::Scattered(LUMINANCE_OF_RGB)
         } else {
             Fate::Ends
         };
-        let shares = match (fate, face.rest) {
-            (Fate::Scattered(shares), _) => shares,
-            (Fate::GoesOn, Some(quantity)) => {
-                let direction = arrival.specular(quantity).normalize();
-                let through = quantity == Quantity::Transmission;
-                return Outcome::Leaves { direction, through, corrected: false };
-            }
-            (Fate::GoesOn, None) | (Fate::Ends, _) => return Outcome::Absorbed,
+        if !matches!(fate, Fate::Scattered(_)) {
+            return unscattered(face, arrival, fate);
+        }
+        match branches.decide(chooser) {
+            Some(branch) => match layers[branch.lobe as usize] {
+                Some(layer) => outcome(&branch::leave(arrival, layer, branch.slice as usize, chooser).0),
+                None => Outcome::Absorbed,
+            },
+            None => Outcome::Absorbed,
+        }
+    }
+
+    #[inline(always)]
+    fn interact_coloured<C: Chooser, T: Throughput>(
+        &self,
+        face: &Face,
+        arrival: &Arrival,
+        (theta, phi): (f64, f64),
+        chooser: &mut C,
+        carried: &mut T,
+    ) -> Outcome {
+        let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
+        let lobes = Lobes { arrival, lobes: face.layers.map(layer) };
+        let albedo = lobes.albedo(true);
+        let fate = carried.scatter(albedo, face.rest.is_some(), chooser);
+        let Fate::Scattered(shares) = fate else {
+            return unscattered(face, arrival, fate);
         };
-        let Some(left) = lobes.sample(if face.coloured { Some(shares) } else { None }, chooser) else {
+        let Some(left) = lobes.sample(Some(shares), chooser) else {
             return Outcome::Absorbed;
         };
-        if face.coloured {
-            let part = if face.rest.is_some() { 1.0 } else { super::reflectance::luminance(albedo) };
-            carried.scattered(left.values, part);
-        }
-        if left.below_horizon {
-            return Outcome::BelowHorizon;
-        }
-        let through = left.quantity == Quantity::Transmission;
-        Outcome::Leaves { direction: left.wo.normalize(), through, corrected: false }
+        let part = if face.rest.is_some() { 1.0 } else { super::reflectance::luminance(albedo) };
+        carried.scattered(left.values, part);
+        outcome(&left)
     }
+}
+
+/// What becomes of a photon that the table does not scatter.
+fn unscattered(face: &Face, arrival: &Arrival, fate: Fate) -> Outcome {
+    match (fate, face.rest) {
+        (Fate::GoesOn, Some(quantity)) => {
+            let direction = arrival.specular(quantity).normalize();
+            Outcome::Leaves { direction, through: quantity == Quantity::Transmission, corrected: false }
+        }
+        _ => Outcome::Absorbed,
+    }
+}
+
+/// What becomes of one that it scatters.
+#[inline(always)]
+fn outcome(left: &Left) -> Outcome {
+    if left.below_horizon {
+        return Outcome::BelowHorizon;
+    }
+    let through = left.quantity == Quantity::Transmission;
+    Outcome::Leaves { direction: left.wo.normalize(), through, corrected: false }
 }
 
 impl Tabulated {
