@@ -28,6 +28,25 @@ impl<const C: usize> Film<C> {
         let number = u128::from(padded[0]) * u128::from(padded[1]);
         u64::try_from(number * u128::from(of_sums + of_film)).unwrap_or(u64::MAX)
     }
+
+    /// Whether a picture of so many columns and rows can be made.
+    ///
+    /// # Errors
+    /// One without pixels; one that takes more than [`MOST_PICTURE_BYTES`].
+    pub fn check_memory(pixels: [u32; 2]) -> Result<()> {
+        let bytes = Self::memory_bytes(pixels);
+        if bytes <= MOST_PICTURE_BYTES && bytes > 0 {
+            return Ok(());
+        }
+        let [columns, rows] = pixels;
+        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+        Err(Diagnostic::new(
+            Kind::Limit,
+            format!("a picture of {columns} x {rows} pixels, which takes {} MiB", mib(bytes)),
+            format!("at least one pixel, and at most {} MiB", mib(MOST_PICTURE_BYTES)),
+        )
+        .hint("fewer pixels; several cameras of a part of the view each make a larger picture"))
+    }
 }
 
 /// Columns and rows of a tile: what one task renders.
@@ -127,19 +146,9 @@ impl<const C: usize> Sums<C> {
     /// Nothing yet, of so many columns and rows.
     ///
     /// # Errors
-    /// A picture without pixels; one of more than [`MOST_PICTURE_BYTES`].
+    /// Those of [`Film::check_memory`].
     pub fn new(pixels: [u32; 2]) -> Result<Self> {
-        let bytes = Film::<C>::memory_bytes(pixels);
-        let [columns, rows] = pixels;
-        if bytes > MOST_PICTURE_BYTES || bytes == 0 {
-            let mib = |bytes: u64| bytes.div_ceil(1 << 20);
-            return Err(Diagnostic::new(
-                Kind::Limit,
-                format!("a picture of {columns} x {rows} pixels, which takes {} MiB", mib(bytes)),
-                format!("at least one pixel, and at most {} MiB", mib(MOST_PICTURE_BYTES)),
-            )
-            .hint("fewer pixels; several cameras of a part of the view each make a larger picture"));
-        }
+        Film::<C>::check_memory(pixels)?;
         let [across, down] = pixels.map(|n| n.div_ceil(TILE) as usize);
         let tiles = vec![PixelSums::NOTHING; across * down * TILE_PIXELS];
         Ok(Self { pixels, tiles, replicates: 0, sets: 0 })

@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
+use crate::camera::Film;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
 use crate::report::picture::method_word;
+use crate::run::picture;
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
@@ -111,7 +113,7 @@ impl Check {
                     0.0
                 },
             }),
-            memory_mb: (scene.memory_bytes() + cells * per_cell) as f64 / 1e6,
+            memory_mb: ((scene.memory_bytes() + cells * per_cell) as u64 + picture_bytes(scene)) as f64 / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
         }
@@ -175,10 +177,24 @@ impl Check {
     }
 }
 
+/// What a camera's picture takes while it is made.
+fn picture_bytes(scene: &Scene) -> u64 {
+    match &scene.camera {
+        None => 0,
+        Some(camera) if scene.is_coloured() => Film::<3>::memory_bytes(camera.pixels),
+        Some(camera) => Film::<1>::memory_bytes(camera.pixels),
+    }
+}
+
 /// Runs the subcommand; the exit code.
 pub fn run(args: &CheckArgs) -> u8 {
-    match render::load(args.scene.as_deref()) {
-        Ok((scene, _)) => {
+    let ready = render::load(args.scene.as_deref()).and_then(|(scene, _)| {
+        // What `render` refuses is not ready.
+        picture::check(&scene).map_err(|e| vec![e])?;
+        Ok(scene)
+    });
+    match ready {
+        Ok(scene) => {
             let check = Check::of_scene(&scene);
             if args.json {
                 print_json(&check);

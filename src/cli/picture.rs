@@ -9,7 +9,7 @@ use crate::report::picture::{camera_attributes, write_camera};
 use crate::run::Plan;
 use crate::run::picture::{self, AnyPicture, Watch, hash_of_photons, picture_of_saved};
 use crate::scene::Scene;
-use crate::scene::camera::CameraSpec;
+use crate::scene::camera::{CameraSpec, Method};
 use crate::scene::source::read_capped;
 use crate::tally::photon_map::SavedMap;
 use crate::tally::photon_map::file::channels;
@@ -36,7 +36,14 @@ pub(super) fn check(args: &RenderArgs, scene: &Scene) -> Result<()> {
             "a scene with a camera: photons are kept for it alone",
         ));
     };
-    let splat = spec.method == crate::scene::camera::Method::Splat;
+    let splat = spec.method == Method::Splat;
+    if splat && args.map.is_some() {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            "--map and method \"splat\"",
+            "method = \"map\": splatting joins photons to the pinhole while they are traced",
+        ));
+    }
     if splat && args.save_map.is_some() {
         return Err(Diagnostic::new(
             Kind::Range,
@@ -44,26 +51,39 @@ pub(super) fn check(args: &RenderArgs, scene: &Scene) -> Result<()> {
             "method = \"map\": splatting keeps no photons",
         ));
     }
-    picture::check(spec)
+    picture::check(scene)
+}
+
+/// Photons from a file, in one channel or three.
+pub(super) enum AnyMap {
+    Grey(SavedMap<1>),
+    Rgb(SavedMap<3>),
+}
+
+/// Reads saved photons.
+///
+/// # Errors
+/// A file that cannot be read, is damaged, or holds other photons than this scene and these settings give.
+pub(super) fn read(path: &Path, scene: &Scene, plan: &Plan) -> Result<AnyMap> {
+    let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
+    let hash = hash_of_photons(scene, plan);
+    let in_file = |e: Diagnostic| e.in_file(path);
+    // A file of the other number of channels is of another scene: its hash says so.
+    Ok(if channels(&bytes).map_err(in_file)? == 3 {
+        AnyMap::Rgb(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?)
+    } else {
+        AnyMap::Grey(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?)
+    })
 }
 
 /// The picture of saved photons.
 ///
 /// # Errors
-/// A file that cannot be read, is damaged, or holds other photons than this scene and these settings give.
-pub(super) fn of_saved(path: &Path, scene: &Scene, plan: &Plan, watch: Watch<'_>) -> Result<AnyPicture> {
-    let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
-    let hash = hash_of_photons(scene, plan);
-    let in_file = |e: Diagnostic| e.in_file(path);
-    // A file of the other number of channels is of another scene: its hash says so.
-    Ok(if scene.is_coloured() && channels(&bytes).map_err(in_file)? == 3 {
-        let saved = SavedMap::<3>::from_bytes(&bytes, &hash).map_err(in_file)?;
-        drop(bytes);
-        AnyPicture::Rgb(picture_of_saved(scene, plan, saved, watch).map_err(in_file)?)
-    } else {
-        let saved = SavedMap::<1>::from_bytes(&bytes, &hash).map_err(in_file)?;
-        drop(bytes);
-        AnyPicture::Grey(picture_of_saved(scene, plan, saved, watch).map_err(in_file)?)
+/// Photons on surfaces that the scene does not have; those of the camera.
+pub(super) fn of_saved(saved: AnyMap, scene: &Scene, plan: &Plan, watch: Watch<'_>) -> Result<AnyPicture> {
+    Ok(match saved {
+        AnyMap::Grey(saved) => AnyPicture::Grey(picture_of_saved(scene, plan, saved, watch)?),
+        AnyMap::Rgb(saved) => AnyPicture::Rgb(picture_of_saved(scene, plan, saved, watch)?),
     })
 }
 

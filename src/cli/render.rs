@@ -6,6 +6,7 @@ use std::time::Instant;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::image::atomic::write_atomically;
 use crate::report::camera::CameraReport;
+use crate::report::saved::SavedReport;
 use crate::report::statistics::ReceiverStatistics;
 use crate::report::{Report, maps, text};
 use crate::run::picture::{AnyPicture, Watch, trace_picture};
@@ -55,13 +56,14 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
     picture::check(args, &scene).map_err(one)?;
     let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons.map(|p| p.value));
     let plan = plan(args, &run, asked).map_err(one)?;
+    if let Some(map) = &args.map {
+        catch_interrupts();
+        return seen_again(args, map, &scene, &plan, started);
+    }
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
     make_directory(&args.output).map_err(one)?;
     say_rounding(asked, &plan);
     catch_interrupts();
-    if let Some(map) = &args.map {
-        return seen_again(args, map, &scene, &plan);
-    }
     let (outcome, picture) = traced(args, &scene, &plan).map_err(one)?;
     let directory = destination(&args.output, &outcome).map_err(one)?;
     let statistics: Vec<_> = scene
@@ -159,22 +161,28 @@ fn seen_again(
     map: &Path,
     scene: &Scene,
     plan: &Plan,
+    started: Instant,
 ) -> std::result::Result<u8, Vec<Diagnostic>> {
     let one = |e: Diagnostic| vec![e];
     let pool = thread_pool(args.threads).map_err(one)?;
+    // A map that is refused leaves no directory behind.
+    let saved = picture::read(map, scene, plan).map_err(one)?;
+    make_directory(&args.output).map_err(one)?;
     let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
-    let picture = pool.install(|| picture::of_saved(map, scene, plan, watch)).map_err(one)?;
-    if let Some(spec) = &scene.camera {
-        let report = picture::write(&args.output, scene, plan, spec, &picture).map_err(one)?;
-        if !args.quiet {
-            print(&format!("scene      {}\n", scene.identity.name));
-            print(&format!(
-                "photons    those saved in {}; none were traced, so receivers have no maps\n",
-                map.display()
-            ));
-            print(&report.text());
-            print(&format!("written to {}\n", args.output.display()));
-        }
+    let picture = pool.install(|| picture::of_saved(saved, scene, plan, watch)).map_err(one)?;
+    let Some(spec) = &scene.camera else { return Ok(exit::DONE) };
+    let camera = picture::write(&args.output, scene, plan, spec, &picture).map_err(one)?;
+    let total_s = started.elapsed().as_secs_f64();
+    let report = SavedReport::new(scene, plan, map, camera, total_s);
+    write_report(&args.output.join("report.json"), &report).map_err(one)?;
+    if !args.quiet {
+        print(&format!("scene      {}\n", scene.identity.name));
+        print(&format!(
+            "photons    those saved in {}; none were traced, so receivers have no maps\n",
+            map.display()
+        ));
+        print(&report.camera.text());
+        print(&format!("written to {}\n", args.output.display()));
     }
     Ok(exit::DONE)
 }
@@ -237,7 +245,7 @@ fn destination(output: &Path, outcome: &Outcome) -> Result<PathBuf> {
     Ok(output.to_path_buf())
 }
 
-fn write_report(path: &Path, report: &Report) -> Result<()> {
+fn write_report(path: &Path, report: &impl serde::Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(report).map_err(|e| {
         Diagnostic::new(Kind::Io, format!("\"{e}\" while writing the report"), "a report in JSON")
             .in_file(path)

@@ -70,6 +70,17 @@ pub struct SceneReport {
     pub files: BTreeMap<String, String>,
 }
 
+impl SceneReport {
+    /// Of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            path: scene.identity.name.clone(),
+            sha256: scene.identity.sha256.clone(),
+            files: scene.identity.files.iter().cloned().collect(),
+        }
+    }
+}
+
 /// Times of a report.
 #[derive(Debug, Clone, Serialize)]
 pub struct TimeReport {
@@ -189,11 +200,7 @@ impl Report {
         let rejects = outcome.plan.algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
-            scene: SceneReport {
-                path: scene.identity.name.clone(),
-                sha256: scene.identity.sha256.clone(),
-                files: scene.identity.files.iter().cloned().collect(),
-            },
+            scene: SceneReport::new(scene),
             variant: outcome.plan.algorithm.variant.name(),
             sequence: outcome.plan.algorithm.sequence.name(),
             solver: (!rejects).then(|| outcome.plan.algorithm.solver.name()),

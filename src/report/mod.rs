@@ -13,6 +13,7 @@ pub mod picture;
 pub mod ply;
 pub mod polar;
 pub mod room;
+pub mod saved;
 pub mod statistics;
 pub mod text;
 

@@ -104,11 +104,17 @@ fn camera_of(scene: &Scene) -> Result<&CameraSpec> {
     })
 }
 
-/// What cannot be done with a camera, told before tracing.
+/// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene without one passes.
 ///
 /// # Errors
-/// Splatting through a lens: a splat meets a point.
-pub fn check(spec: &CameraSpec) -> Result<()> {
+/// A picture that takes more memory than pictures may; splatting through a lens: a splat meets a point.
+pub fn check(scene: &Scene) -> Result<()> {
+    let Some(spec) = &scene.camera else { return Ok(()) };
+    if scene.is_coloured() {
+        Film::<3>::check_memory(spec.pixels)?;
+    } else {
+        Film::<1>::check_memory(spec.pixels)?;
+    }
     if spec.method == Method::Splat && spec.lens_radius_m > 0.0 {
         return Err(Diagnostic::new(
             Kind::Range,
@@ -133,7 +139,7 @@ pub fn trace_picture(
     watch: Watch<'_>,
 ) -> Result<(Outcome, AnyPicture)> {
     let spec = camera_of(scene)?;
-    check(spec)?;
+    check(scene)?;
     if scene.is_coloured() {
         let (outcome, picture) = with_channels::<3, _>(scene, spec, plan, keep, watch, Rgb::WHITE)?;
         Ok((outcome, AnyPicture::Rgb(picture)))
@@ -177,7 +183,7 @@ pub fn picture_of_saved<const C: usize>(
     watch: Watch<'_>,
 ) -> Result<Picture<C>> {
     let spec = camera_of(scene)?;
-    check(spec)?;
+    check(scene)?;
     if spec.method == Method::Splat {
         return Err(Diagnostic::new(
             Kind::Range,

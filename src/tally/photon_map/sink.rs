@@ -37,7 +37,7 @@ pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
 }
 
 /// Photons of one block: a handle gives them to the store together, so that what it holds is never copied to grow.
-const BLOCK: usize = 1 << 12;
+const BLOCK: usize = 1 << 8;
 
 /// Photons kept, in blocks; any number of threads add to it, and the order of the blocks means nothing.
 #[derive(Debug)]

@@ -1,0 +1,109 @@
+//! Photons take no more memory than the camera was given, however many there are.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+#![allow(unsafe_code)]
+
+mod picture_support;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use caustix::bsdf::{Bsdf, Dielectric, Reflectance};
+use caustix::run::picture::{PictureSummary, trace_picture};
+use caustix::scene::Scene;
+use caustix::scene::camera::{Bandwidth, CameraSpec};
+use glam::DVec3;
+use picture_support::{beam, grey, on_threads, panel, plan, rectangle, scene, sphere, unwatched};
+
+/// The system's allocator, counting live bytes and the most there ever were.
+struct Counting;
+
+static LIVE: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is handed on unchanged to the system's allocator; only counters are kept beside.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let live = LIVE.fetch_add(layout.size(), Ordering::SeqCst) + layout.size();
+        PEAK.fetch_max(live, Ordering::SeqCst);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size(), Ordering::SeqCst);
+        // SAFETY: the caller keeps the contract of `dealloc`, and `pointer` came from the system's allocator.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Most bytes alive while `work` ran, beyond those alive before.
+fn peak_of<T>(work: impl FnOnce() -> T) -> (usize, T) {
+    let before = LIVE.load(Ordering::SeqCst);
+    PEAK.store(before, Ordering::SeqCst);
+    let result = work();
+    (PEAK.load(Ordering::SeqCst) - before, result)
+}
+
+/// A glass ball over a table before a wall, under a beam and a panel.
+fn ball_on_table(table: Bsdf, memory_bytes: u64, bandwidth: Bandwidth, pixels: [u32; 2]) -> Scene {
+    let position = DVec3::new(0.2, -1.6, 0.9);
+    let camera = CameraSpec {
+        photon_memory_bytes: memory_bytes,
+        bandwidth,
+        samples: 4,
+        ..CameraSpec::pinhole(position, DVec3::new(0.0, 0.3, 0.0), DVec3::Z, 60.0, pixels)
+    };
+    let plate = rectangle("table", DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
+    let back = rectangle("wall", DVec3::new(-1.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 1.5);
+    let glass = Bsdf::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let light = [
+        beam(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z, 0.3, 300.0),
+        panel(DVec3::Z * 1.8, DVec3::NEG_Z, DVec3::X, [0.4, 0.4], 700.0),
+    ];
+    let ball = (sphere("ball", DVec3::new(0.1, 0.2, 0.35), 0.25), glass);
+    scene(vec![(plate, table), (back, grey(0.4)), ball], light.into(), Some(camera))
+}
+
+fn peak(scene: &Scene, photons: u64) -> (usize, PictureSummary) {
+    let plan = plan(photons, 4);
+    let go = || trace_picture(scene, &plan, false, unwatched(&AtomicBool::new(false))).unwrap();
+    let (peak, (_, picture)) = peak_of(go);
+    (peak, picture.summary().clone())
+}
+
+// One test: the counters are of the whole process.
+#[test]
+fn photons_take_what_the_camera_has_for_them_and_a_refused_picture_takes_nothing() {
+    let red = Bsdf::Lambertian { reflectance: Reflectance::rgb([0.9, 0.5, 0.4]) };
+    on_threads(2, || {
+        for (label, table, bytes_of_photon) in [("one channel", grey(0.5), 28), ("colour", red, 36)] {
+            for bandwidth in [Bandwidth::Automatic, Bandwidth::Radius(0.02)] {
+                let with = |bytes| ball_on_table(table.clone(), bytes, bandwidth, [16, 12]);
+                // Threads and their stacks are made once; what a run takes beside its photons is that of one with hardly room.
+                peak(&with(1 << 20), 1 << 12);
+                let (beside, _) = peak(&with(1 << 16), 1 << 12);
+                for budget in [1 << 20, 4 << 20] {
+                    let (peak, summary) = peak(&with(budget), 3 * budget / 8);
+                    let all = summary.photons_kept * bytes_of_photon;
+                    println!(
+                        "{label}, {bandwidth:?}: {peak} bytes for a budget of {budget} and {beside} beside; {all} bytes in {} passes",
+                        summary.passes
+                    );
+                    assert!(all > 5 * budget, "{all}");
+                    assert!(summary.passes >= 10, "{}", summary.passes);
+                    assert!(peak < budget as usize + beside, "{label}, {bandwidth:?}, {budget}: {peak}, {beside}");
+                    // A budget that is not used would be no bound.
+                    assert!(peak > budget as usize / 2, "{peak}");
+                }
+            }
+        }
+    });
+    let large = ball_on_table(grey(0.5), 1 << 20, Bandwidth::Automatic, [8192, 8192]);
+    let go = || trace_picture(&large, &plan(1 << 12, 4), false, unwatched(&AtomicBool::new(false)));
+    let (peak, refused) = peak_of(go);
+    assert!(refused.is_err());
+    assert!(peak < 1 << 12, "{peak} bytes to refuse a picture of 6 GiB");
+}
