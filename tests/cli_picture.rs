@@ -139,8 +139,7 @@ fn saved_photons_give_the_bytes_of_the_fresh_picture_and_one_of_another_view() {
     let folder = Folder::new();
     for (name, table, other) in [("grey", GREY, COLOUR), ("colour", COLOUR, GREY)] {
         folder.scene("scene.toml", &ball(table, ""));
-        let (exr, png, fresh) =
-            folder.picture("scene.toml --save-map photons.map", &format!("{name}-fresh"));
+        let (exr, png, fresh) = folder.picture("scene.toml --save-map photons.map", &format!("{name}-fresh"));
         for threads in [1, 2, 7] {
             let line = format!("scene.toml --map photons.map --threads {threads}");
             let (again_exr, again_png, _) = folder.picture(&line, &format!("{name}-again-{threads}"));

@@ -94,7 +94,10 @@ fn photons_take_what_the_camera_has_for_them_and_a_refused_picture_takes_nothing
                     );
                     assert!(all > 5 * budget, "{all}");
                     assert!(summary.passes >= 10, "{}", summary.passes);
-                    assert!(peak < budget as usize + beside, "{label}, {bandwidth:?}, {budget}: {peak}, {beside}");
+                    assert!(
+                        peak < budget as usize + beside,
+                        "{label}, {bandwidth:?}, {budget}: {peak}, {beside}"
+                    );
                     // A budget that is not used would be no bound.
                     assert!(peak > budget as usize / 2, "{peak}");
                 }

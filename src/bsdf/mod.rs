@@ -26,7 +26,7 @@ use crate::sample::coordinates::Chooser;
 pub use dielectric::Dielectric;
 pub use eye::EyeWeight;
 pub use reference::Reference;
-pub use reflectance::{Reflectance, luminance};
+pub use reflectance::{Reflectance, luminance, luminance_of};
 pub use tabulated::Tabulated;
 pub use throughput::{Fixed, Grey, Rgb, Throughput};
 

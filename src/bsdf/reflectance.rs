@@ -49,6 +49,15 @@ pub fn luminance(rgb: [f64; 3]) -> f64 {
     LUMINANCE_OF_RGB[0] * rgb[0] + LUMINANCE_OF_RGB[1] * rgb[1] + LUMINANCE_OF_RGB[2] * rgb[2]
 }
 
+/// The same of a light in one channel, which is its luminance, or in three of linear sRGB.
+#[inline(always)]
+pub fn luminance_of<const C: usize>(channels: &[f64; C]) -> f64 {
+    match channels.as_slice() {
+        &[r, g, b] => luminance([r, g, b]),
+        one => one[0],
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -53,15 +53,6 @@ impl Bsdf {
             Self::Lambertian { .. } | Self::Dielectric(_) | Self::Mirror { .. } | Self::Absorber => [0.0; 3],
         }
     }
-
-    /// Whether light from one side may leave on the other by scattering.
-    #[inline]
-    pub fn scatters_through(&self) -> bool {
-        match self {
-            Self::Tabulated(table) => table.transmits(true) || table.transmits(false),
-            Self::Lambertian { .. } | Self::Dielectric(_) | Self::Mirror { .. } | Self::Absorber => false,
-        }
-    }
 }
 
 #[cfg(test)]
@@ -76,7 +67,7 @@ mod tests {
         assert_eq!(wall.value(DVec3::Z, wi, wo), [0.5 * FRAC_1_PI, 0.25 * FRAC_1_PI, FRAC_1_PI]);
         assert_eq!(wall.value(-DVec3::Z, wi, wo), wall.value(DVec3::Z, wi, wo));
         assert_eq!(wall.value(DVec3::Z, wi, -wo), [0.0; 3]);
-        assert!(wall.scatters() && !wall.scatters_through());
+        assert!(wall.scatters());
         assert!(!Bsdf::Lambertian { reflectance: Reflectance::grey(0.0) }.scatters());
         assert!(!Bsdf::Absorber.scatters());
     }

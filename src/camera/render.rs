@@ -10,12 +10,12 @@ use super::eye::{EyePath, Looks};
 use super::film::{PixelSums, SETS, Sums, TILE, TILE_PIXELS};
 use super::filter;
 use super::view::View;
+use crate::bsdf::luminance_of;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::estimate::density::{Density, Gathered};
+use crate::estimate::density::Density;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::hash::stream_key;
 use crate::sequence::owen::OwenPoints;
-use crate::units::LUMINANCE_OF_RGB;
 
 /// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not hold all of
 /// them.
@@ -43,11 +43,6 @@ impl<'d, const C: usize> Pass<'d, C> {
     /// Emitters and the background alone: what is left to the eye where every photon is joined to the pinhole.
     pub fn emission() -> Self {
         Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false }
-    }
-
-    /// Emitters, the background and direct light: all that no photon brings.
-    pub fn without_photons() -> Self {
-        Self { direct: true, ..Self::emission() }
     }
 
     /// Further photons of these replicates.
@@ -150,12 +145,12 @@ impl<'a, const C: usize> Brush<'a, C> {
                 sums.value[c] += found[c] * of_sample;
             }
             before = gathered;
-            sums.by_set[set as usize] += (luminance(found) / f64::from(self.samples_per_set)) as f32;
+            sums.by_set[set as usize] += (luminance_of(&found) / f64::from(self.samples_per_set)) as f32;
         }
-        let doubts = Doubts::of(&self.path.gathered);
-        sums.difference += doubts.difference * of_sample;
-        sums.further_bias += doubts.further_bias * of_sample;
-        sums.sparse_square += (doubts.sparse * of_sample).powi(2);
+        let gathered = &self.path.gathered;
+        sums.difference += (luminance_of(&gathered.second) - luminance_of(&gathered.value)) * of_sample;
+        sums.further_bias += gathered.nearest_bias * of_sample;
+        sums.sparse_square += (gathered.sparse * of_sample).powi(2);
         for replicate in self.pass.replicates.clone() {
             let luminance = self.path.gathered.by_replicate[replicate as usize] * of_sample;
             sums.add_replicate(luminance, self.pass.finishes);
@@ -171,26 +166,4 @@ impl<'a, const C: usize> Brush<'a, C> {
         let ray = if pinhole.has_lens() { pinhole.ray_by_lens(place, pair()) } else { pinhole.ray(place) };
         self.path.look(ray, &mut chooser)
     }
-}
-
-/// What densities say about their luminance beside its spread over replicates.
-struct Doubts {
-    /// At the second bandwidth less at the first.
-    difference: f64,
-    /// Bias that bandwidths don't tell.
-    further_bias: f64,
-    /// Standard error owed to places with hardly a photon.
-    sparse: f64,
-}
-
-impl Doubts {
-    fn of<const C: usize>(gathered: &Gathered<C>) -> Self {
-        let difference = luminance(gathered.second) - luminance(gathered.value);
-        Self { difference, further_bias: gathered.nearest_bias, sparse: gathered.sparse }
-    }
-}
-
-/// Luminance of one channel, which is that already, or of linear sRGB.
-fn luminance<const C: usize>(value: [f64; C]) -> f64 {
-    if C == 1 { value[0] } else { value.iter().zip(LUMINANCE_OF_RGB).map(|(v, y)| v * y).sum() }
 }

@@ -15,9 +15,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 
-use crate::bsdf::Bsdf;
-use crate::bsdf::reflectance::luminance;
 use crate::bsdf::value::Leg;
+use crate::bsdf::{Bsdf, luminance, luminance_of};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::scene::Scene;
@@ -136,7 +135,7 @@ impl<'s, const C: usize> Splat<'s, C> {
             for (sum, value) in into.sum[pixel].iter_mut().zip(value) {
                 *sum += value;
             }
-            let y = luminance_of(value);
+            let y = luminance_of(&value);
             into.square[pixel] += y * y;
         }
     }
@@ -206,13 +205,6 @@ fn value<const C: usize>(bsdf: &Bsdf, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; 
     let arrived = Leg { direction: wi, front: hit.front };
     let rgb = bsdf.value_between(hit.normal, arrived, Leg::new(wo, hit.normal));
     if C == 1 { [luminance(rgb); C] } else { std::array::from_fn(|c| rgb[c]) }
-}
-
-fn luminance_of<const C: usize>(value: [f64; C]) -> f64 {
-    match value.as_slice() {
-        [r, g, b] => luminance([*r, *g, *b]),
-        _ => value[0],
-    }
 }
 
 /// Joins the arrivals of one batch to the pinhole, direct light included, and adds them to a scene's receivers.

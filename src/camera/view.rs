@@ -1,7 +1,5 @@
 //! A camera put into a scene.
 
-use glam::DVec3;
-
 use super::pinhole::Pinhole;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::Whereabouts;
@@ -55,31 +53,8 @@ impl<'s> View<'s> {
         Ok(Self { scene, spec: spec.clone(), pinhole, start: Whereabouts::start(behind), seed })
     }
 
-    /// The projection.
-    pub fn pinhole(&self) -> &Pinhole {
-        &self.pinhole
-    }
-
     /// The camera.
     pub fn spec(&self) -> &CameraSpec {
         &self.spec
-    }
-
-    /// The scene.
-    pub fn scene(&self) -> &'s Scene {
-        self.scene
-    }
-
-    /// The side state of rays that start at the camera.
-    pub fn start(&self) -> Whereabouts {
-        self.start
-    }
-
-    /// Whether the pinhole and a point (m) of a surface see each other: `from` is the point's side state, on the side that
-    /// looks to the camera. Every surface is in the way, glass included.
-    pub fn sees(&self, point: DVec3, from: &Whereabouts) -> bool {
-        let to = self.pinhole.position() - point;
-        let distance_m = to.length();
-        !self.scene.geometry.occluded(point, to / distance_m, distance_m, from)
     }
 }

@@ -5,7 +5,6 @@ use serde::Serialize;
 use crate::camera::Film;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
-use crate::report::picture::method_word;
 use crate::run::picture;
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
@@ -106,7 +105,7 @@ impl Check {
             camera: scene.camera.as_ref().map(|c| CameraCheck {
                 pixels: c.pixels,
                 samples: c.samples,
-                method: method_word(c.method),
+                method: c.method.word(),
                 photon_memory_mb: if c.method == Method::Map {
                     c.photon_memory_bytes as f64 / 1e6
                 } else {

@@ -8,10 +8,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::bsdf::luminance_of;
 use crate::geometry::{Geometry, Hit};
 use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS, Kernel};
 use crate::tally::photon_map::{Photon, PhotonMap, by_distance};
-use crate::units::LUMINANCE_OF_RGB;
 
 use super::bandwidth::{self, Chosen};
 use super::footprint::{Footprint, Footprints};
@@ -105,8 +105,8 @@ impl<const C: usize> Gathered<C> {
     /// Adds what was found for a weight of 1, times `weight`. The parts of the replicates are those of the luminance found.
     fn add_weighted(&mut self, found: &Self, weight: [f64; C]) {
         let weighted: [f64; C] = std::array::from_fn(|c| weight[c] * found.value[c]);
-        let y = luminance(&found.value);
-        let of_luminance = if y > 0.0 { luminance(&weighted) / y } else { 0.0 };
+        let y = luminance_of(&found.value);
+        let of_luminance = if y > 0.0 { luminance_of(&weighted) / y } else { 0.0 };
         for c in 0..C {
             self.value[c] += weighted[c];
             self.second[c] += weight[c] * found.second[c];
@@ -114,14 +114,15 @@ impl<const C: usize> Gathered<C> {
         for (sum, part) in self.by_replicate.iter_mut().zip(&found.by_replicate) {
             *sum += of_luminance * part;
         }
-        self.sparse += luminance(&weight).abs() * found.sparse;
+        self.sparse += luminance_of(&weight).abs() * found.sparse;
         self.nearest_bias += of_luminance * found.nearest_bias;
     }
 
     /// Estimated size of the bias of `value`'s luminance, cd/m2: [`BIAS_PER_DIFFERENCE`] times what the second bandwidth
     /// makes of it.
     pub fn bias(&self) -> f64 {
-        (luminance(&self.second) - luminance(&self.value)).abs() * BIAS_PER_DIFFERENCE + self.nearest_bias
+        (luminance_of(&self.second) - luminance_of(&self.value)).abs() * BIAS_PER_DIFFERENCE
+            + self.nearest_bias
     }
 
     /// Standard error of `value`'s luminance as the photons have it, given the bandwidth, cd/m2: from the spread of the
@@ -135,16 +136,6 @@ impl<const C: usize> Gathered<C> {
         let squares = self.by_replicate.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>();
         let variance = n as f64 / (n - 1) as f64 * squares;
         Some((variance + self.sparse * self.sparse).sqrt())
-    }
-}
-
-/// Y of linear sRGB; of one channel, itself.
-#[inline(always)]
-pub fn luminance<const C: usize>(channels: &[f64; C]) -> f64 {
-    if C == LUMINANCE_OF_RGB.len() {
-        channels.iter().zip(LUMINANCE_OF_RGB).map(|(v, y)| v * y).sum()
-    } else {
-        channels.iter().sum()
     }
 }
 
@@ -297,7 +288,7 @@ impl<'m, const C: usize> Density<'m, C> {
             let down = if at.front { -at.normal } else { at.normal };
             let f = value_of(down, at.front);
             let one: [f64; C] = std::array::from_fn(|c| weight[c] * f[c] * self.photon_lm * one_photon);
-            into.sparse += luminance(&one).abs() * ((hits + 1) as f64).sqrt();
+            into.sparse += luminance_of(&one).abs() * ((hits + 1) as f64).sqrt();
         }
         into.heights = heights;
         into.found = found;
@@ -434,7 +425,7 @@ impl<'m, const C: usize> Density<'m, C> {
         let second = second.max(least);
         into.reach_m = first;
         let heights = self.heights(footprint, [first, second]);
-        let before = luminance(&into.value);
+        let before = luminance_of(&into.value);
         let mut hits = 0;
         for &(d2, place) in found.iter() {
             let photon = &map.photons()[place as usize];
@@ -442,7 +433,7 @@ impl<'m, const C: usize> Density<'m, C> {
             hits += u64::from(t1 < 1.0);
             self.add_two(photon, [t1, t2], heights, weight, value_of, into);
         }
-        into.nearest_bias += (luminance(&into.value) - before).abs() / (2.0 * k as f64 - 1.0).max(1.0);
+        into.nearest_bias += (luminance_of(&into.value) - before).abs() / (2.0 * k as f64 - 1.0).max(1.0);
         (hits, heights[0])
     }
 
@@ -480,7 +471,7 @@ impl<'m, const C: usize> Density<'m, C> {
             into.second[c] += l * second;
         }
         if let Some(sum) = into.by_replicate.get_mut(photon.replicate()) {
-            *sum += luminance(&brought) * first;
+            *sum += luminance_of(&brought) * first;
         }
     }
 }

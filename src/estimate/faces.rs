@@ -101,14 +101,6 @@ impl FaceTree {
         sum
     }
 
-    /// Bytes held.
-    pub fn memory_bytes(&self) -> usize {
-        size_of_val(self.triangles.as_slice())
-            + size_of_val(self.normals.as_slice())
-            + size_of_val(self.order.as_slice())
-            + size_of_val(self.nodes.as_slice())
-    }
-
     fn face_integral(&self, kernel: Kernel, centre: DVec3, radius_m: f64, face: usize) -> f64 {
         let corners = self.triangles[face].map(|v| (v - centre) / radius_m);
         // Of a sliver the facet's normal is known only as well as its coordinates allow; what it adds is as small.

@@ -84,11 +84,6 @@ impl<'g> Footprints<'g> {
         Some(self.about(position, normal, surface))
     }
 
-    /// Bytes held.
-    pub fn memory_bytes(&self) -> usize {
-        self.faces.iter().filter_map(OnceLock::get).map(FaceTree::memory_bytes).sum()
-    }
-
     fn about(&self, centre: DVec3, normal: DVec3, surface: usize) -> Footprint<'_> {
         let part = match &self.geometry.surfaces()[surface].shape {
             Shape::Rectangle(r) => Part::Rectangle(r),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use crate::run::picture::{Chosen, PictureSummary};
-use crate::scene::camera::{CameraSpec, Method};
+use crate::scene::camera::CameraSpec;
 
 use super::text::{grouped, rounded};
 
@@ -41,32 +41,9 @@ pub struct CameraReport {
 #[derive(Debug, Clone, Serialize)]
 pub struct BandwidthReport {
     /// Of light that no surface scattered before it arrived.
-    pub caustic: DensityReport,
+    pub caustic: Chosen,
     /// Of light that was scattered before.
-    pub diffuse: DensityReport,
-}
-
-/// One bandwidth.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct DensityReport {
-    /// Radius, m.
-    pub radius_m: Option<f64>,
-    /// Mean number of photons within it.
-    pub neighbours: Option<f64>,
-}
-
-impl From<Chosen> for DensityReport {
-    fn from(chosen: Chosen) -> Self {
-        Self { radius_m: chosen.radius_m, neighbours: chosen.neighbours }
-    }
-}
-
-/// The word of the scene file for a method.
-fn word(method: Method) -> &'static str {
-    match method {
-        Method::Map => "map",
-        Method::Splat => "splat",
-    }
+    pub diffuse: Chosen,
 }
 
 impl CameraReport {
@@ -75,11 +52,8 @@ impl CameraReport {
         Self {
             pixels: spec.pixels,
             samples: spec.samples,
-            method: word(summary.method),
-            bandwidth: summary.bandwidth.map(|[caustic, diffuse]| BandwidthReport {
-                caustic: caustic.into(),
-                diffuse: diffuse.into(),
-            }),
+            method: summary.method.word(),
+            bandwidth: summary.bandwidth.map(|[caustic, diffuse]| BandwidthReport { caustic, diffuse }),
             median_bias_percent: summary.cost.median_bias_percent,
             median_standard_error_percent: summary.cost.median_standard_error_percent,
             photons: summary.photons,
@@ -136,7 +110,7 @@ impl CameraReport {
     }
 }
 
-fn described(density: &DensityReport) -> String {
+fn described(density: &Chosen) -> String {
     let radius = density.radius_m.map(|r| format!("{} m", rounded(r, 3)));
     let neighbours = density.neighbours.map(|n| format!("{} photons", rounded(n, 3)));
     match (radius, neighbours) {
@@ -150,6 +124,7 @@ fn described(density: &DensityReport) -> String {
 mod tests {
     use super::*;
     use crate::run::picture::summary::Cost;
+    use crate::scene::camera::Method;
     use glam::DVec3;
 
     #[test]

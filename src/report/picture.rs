@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::bsdf::luminance;
+use crate::bsdf::luminance_of;
 use crate::camera::Film;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::image::exr::{Channel, Data, Value, write_luminance};
@@ -12,7 +12,7 @@ use crate::image::scale::Scale;
 use crate::image::tone::Tone;
 use crate::run::Plan;
 use crate::scene::Scene;
-use crate::scene::camera::{Bandwidth, CameraSpec, Exposure, Filter, Kernel, Method};
+use crate::scene::camera::{Bandwidth, CameraSpec, Exposure, Method};
 
 use super::attributes::run_attributes;
 use super::text::{digits, rounded};
@@ -38,7 +38,7 @@ pub fn write_camera<const C: usize>(
         let found = format!("{pixels} pixels of a picture of {width} x {height}");
         return Err(Diagnostic::new(Kind::Range, found, "one value, error and bias for each pixel"));
     }
-    let tone = Tone::of_camera(spec, film.value.iter().map(|v| luminance(rgb(*v))));
+    let tone = Tone::of_camera(spec, film.value.iter().map(luminance_of));
     let mut files = vec![format!("{name}.exr"), format!("{name}.png")];
     write_exr(&directory.join(&files[0]), film, &[attributes, &picture_attributes(&tone)].concat())?;
     let bytes: Vec<u8> = film.value.iter().flat_map(|v| tone.display(rgb(*v)).to_srgb()).collect();
@@ -71,7 +71,7 @@ fn write_exr<const C: usize>(path: &Path, film: &Film<C>, attributes: &[(String,
 }
 
 fn write_false_colour<const C: usize>(path: &Path, name: &str, film: &Film<C>, tone: &Tone) -> Result<()> {
-    let values: Vec<f64> = film.value.iter().map(|v| luminance(rgb(*v))).collect();
+    let values: Vec<f64> = film.value.iter().map(luminance_of).collect();
     let picture = FalseColour {
         title: name,
         width: film.pixels[0] as usize,
@@ -135,24 +135,11 @@ pub fn camera_attributes(
     add("lens_radius_m", Value::F64(spec.lens_radius_m));
     add("focus_m", Value::F64(spec.focus_m));
     let mut word = |name: &str, value: &str| add(name, Value::Text(value.to_string()));
-    word("method", method_word(spec.method));
-    word(
-        "filter",
-        match spec.filter {
-            Filter::Box => "box",
-            Filter::Tent => "tent",
-            Filter::Gaussian => "gaussian",
-        },
-    );
+    word("method", spec.method.word());
+    word("filter", spec.filter.word());
     word("exposure", if spec.exposure == Exposure::Auto { "auto" } else { "given" });
     if spec.method == Method::Map {
-        word(
-            "kernel",
-            match spec.kernel {
-                Kernel::Flat => "flat",
-                Kernel::Epanechnikov => "epanechnikov",
-            },
-        );
+        word("kernel", spec.kernel.word());
         match spec.bandwidth {
             Bandwidth::Automatic => word("bandwidth", "automatic"),
             Bandwidth::Radius(r) => add("radius_m", Value::F64(r)),
@@ -165,14 +152,6 @@ pub fn camera_attributes(
         }
     }
     all
-}
-
-/// The word of the scene file for a method.
-pub fn method_word(method: Method) -> &'static str {
-    match method {
-        Method::Map => "map",
-        Method::Splat => "splat",
-    }
 }
 
 #[cfg(test)]

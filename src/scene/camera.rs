@@ -14,6 +14,17 @@ pub enum Filter {
     Gaussian,
 }
 
+impl Filter {
+    /// The word of the scene file for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Box => "box",
+            Self::Tent => "tent",
+            Self::Gaussian => "gaussian",
+        }
+    }
+}
+
 /// How light that photons bring reaches the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
@@ -23,6 +34,16 @@ pub enum Method {
     /// Every photon is joined to the pinhole: no density bias, but what is scattered last is not seen by mirror or through
     /// glass.
     Splat,
+}
+
+impl Method {
+    /// The word of the scene file for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Map => "map",
+            Self::Splat => "splat",
+        }
+    }
 }
 
 /// Photons that the automatic bandwidth takes at least.
@@ -57,6 +78,16 @@ pub enum Kernel {
     /// 2 / (pi r^2) (1 - d^2 / r^2).
     #[default]
     Epanechnikov,
+}
+
+impl Kernel {
+    /// The word of the scene file for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Epanechnikov => "epanechnikov",
+        }
+    }
 }
 
 /// Which luminance becomes white in the PNG.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::bsdf::luminance_of;
 use crate::camera::Film;
 use crate::camera::splat::{Splat, SplatMoments};
 use crate::error::Result;
@@ -11,7 +12,7 @@ use crate::tally::photon_map::Channels;
 
 use super::super::{Outcome, Plan, trace_by};
 use super::eye::Eye;
-use super::summary::{Cost, PictureSummary, luminance_of};
+use super::summary::{Cost, PictureSummary};
 use super::{Picture, Watch};
 
 /// Traces a scene and splats its photons; emitters and background are seen by eye paths.
@@ -71,7 +72,7 @@ fn with_splats<const C: usize>(mut film: Film<C>, moments: &SplatMoments<C>, out
         for (value, sum) in film.value[pixel].iter_mut().zip(sum) {
             *value += sum * photon_lm;
         }
-        let y = luminance_of(*sum);
+        let y = luminance_of(sum);
         // R s^2 of the R partial sums.
         let variance = r / (r - 1.0) * (square - y * y / r).max(0.0) * photon_lm * photon_lm;
         let of_eye = film.standard_error[pixel];

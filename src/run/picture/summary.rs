@@ -1,11 +1,13 @@
 //! How a picture was made and what it cost.
 
-use crate::bsdf::reflectance::luminance;
+use serde::Serialize;
+
+use crate::bsdf::luminance_of;
 use crate::camera::Film;
 use crate::scene::camera::Method;
 
-/// A bandwidth that was chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// A bandwidth that was chosen, as report.json tells it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Chosen {
     /// Radius, m; of nearest neighbours their mean distance, where it is known.
     pub radius_m: Option<f64>,
@@ -55,7 +57,7 @@ impl Cost {
                 .value
                 .iter()
                 .zip(errors)
-                .map(|(value, error)| 100.0 * error.abs() / luminance_of(*value))
+                .map(|(value, error)| 100.0 * error.abs() / luminance_of(value))
                 .filter(|percent| percent.is_finite())
                 .collect();
             median(&mut parts)
@@ -64,14 +66,6 @@ impl Cost {
             median_bias_percent: median_of(&film.bias),
             median_standard_error_percent: median_of(&film.standard_error),
         }
-    }
-}
-
-/// Luminance of a pixel.
-pub fn luminance_of<const C: usize>(value: [f64; C]) -> f64 {
-    match value.as_slice() {
-        [r, g, b] => luminance([*r, *g, *b]),
-        _ => value[0],
     }
 }
 

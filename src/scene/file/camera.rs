@@ -22,10 +22,13 @@ const WHITE: Interval =
     Interval { low: 1e-9, high: 1e15, words: "\"auto\", or the luminance of white, 1e-9 to 1e15 cd/m2" };
 const MEMORY_MB: Interval = Interval { low: 1.0, high: 1e9, words: "a number of megabytes from 1 to 1e9" };
 
-const FILTERS: [(&str, Filter); 3] =
-    [("box", Filter::Box), ("tent", Filter::Tent), ("gaussian", Filter::Gaussian)];
-const METHODS: [(&str, Method); 2] = [("map", Method::Map), ("splat", Method::Splat)];
-const KERNELS: [(&str, Kernel); 2] = [("flat", Kernel::Flat), ("epanechnikov", Kernel::Epanechnikov)];
+/// Meanings with their words.
+macro_rules! worded {
+    ($($meaning:expr),+) => { [$(($meaning.word(), $meaning)),+] };
+}
+const FILTERS: [(&str, Filter); 3] = worded!(Filter::Box, Filter::Tent, Filter::Gaussian);
+const METHODS: [(&str, Method); 2] = worded!(Method::Map, Method::Splat);
+const KERNELS: [(&str, Kernel); 2] = worded!(Kernel::Flat, Kernel::Epanechnikov);
 const EXPOSURES: [(&str, Exposure); 1] = [("auto", Exposure::Auto)];
 
 /// The keys that only a density estimate looks at.

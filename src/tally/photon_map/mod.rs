@@ -62,11 +62,6 @@ impl<const C: usize> PhotonMap<C> {
         &self.photons
     }
 
-    /// The photons again.
-    pub fn into_photons(self) -> Vec<Photon<C>> {
-        self.photons
-    }
-
     /// What positions are counted in.
     pub fn frame(&self) -> &Frame {
         &self.frame
