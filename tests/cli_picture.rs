@@ -140,8 +140,7 @@ fn saved_photons_give_the_bytes_of_the_fresh_picture_and_one_of_another_view() {
     let folder = Folder::new();
     for (name, table, other) in [("grey", GREY, COLOUR), ("colour", COLOUR, GREY)] {
         folder.scene("scene.toml", &ball(table, ""));
-        let (exr, png, fresh) =
-            folder.picture("scene.toml --save-map photons.map", &format!("{name}-fresh"));
+        let (exr, png, fresh) = folder.picture("scene.toml --save-map photons.map", &format!("{name}-fresh"));
         for threads in [1, 2, 7] {
             let line = format!("scene.toml --map photons.map --threads {threads}");
             let (again_exr, again_png, _) = folder.picture(&line, &format!("{name}-again-{threads}"));
@@ -209,7 +208,10 @@ fn damaged_maps_and_those_of_another_run_are_refused_by_name_and_reason() {
     }
     // Whole, but of other photons: another seed, another number, another sequence, another scene.
     for options in ["--seed 9", "--sequence independent", "--variant mc"] {
-        folder.refused(&format!("scene.toml --map photons.map {options}"), &["photons.map", "hash", "trace the photons again"]);
+        folder.refused(
+            &format!("scene.toml --map photons.map {options}"),
+            &["photons.map", "hash", "trace the photons again"],
+        );
     }
     folder.scene("lower.toml", &ball(GREY, "").replace("0.0, 0.0, 0.25", "0.0, 0.0, 0.24"));
     folder.refused("lower.toml --map photons.map", &["photons.map", "hash", "the scene or a file of it"]);

@@ -32,8 +32,7 @@ fn bits<const C: usize>(film: &Film<C>, factor: f64) -> Vec<u64> {
 fn seen(description: &Description, s: f64) -> (Outcome, Vec<u64>, PictureSummary) {
     let scene = build(&scaled(description.clone(), s)).unwrap_or_else(|e| panic!("{e:?}"));
     let plan = plan(1 << 15, 4);
-    let (outcome, picture) =
-        trace_picture(&scene, &plan, false, unwatched(&AtomicBool::new(false))).unwrap();
+    let (outcome, picture) = trace_picture(&scene, &plan, false, unwatched(&AtomicBool::new(false))).unwrap();
     let film = match &picture {
         AnyPicture::Grey(picture) => bits(&picture.film, s * s),
         AnyPicture::Rgb(picture) => bits(&picture.film, s * s),
@@ -56,7 +55,11 @@ fn powers_of_two_change_no_bit_of_a_picture() {
                 let (other_outcome, other_film, other) = seen(&description, s);
                 assert!(outcome.cells == other_outcome.cells, "{at} x {s}");
                 assert_eq!(outcome.ledger, other_outcome.ledger, "{at} x {s}");
-                assert_eq!((summary.photons_kept, summary.cost), (other.photons_kept, other.cost), "{at} x {s}");
+                assert_eq!(
+                    (summary.photons_kept, summary.cost),
+                    (other.photons_kept, other.cost),
+                    "{at} x {s}"
+                );
                 let radii = |summary: &PictureSummary| summary.bandwidth.map(|b| b.map(|c| c.radius_m));
                 let expected = radii(&summary).map(|b| b.map(|r| r.map(|r| r * s)));
                 assert_eq!(radii(&other), expected, "{at} x {s}");

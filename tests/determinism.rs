@@ -245,7 +245,12 @@ fn the_ledger_closes_in_every_scene() {
             assert_eq!(ledger.absorbed.iter().sum::<u64>() + ledger.escaped + ledger.killed, n);
             // The bowl of the wine glass, faceted and clear, can keep a photon for good, one in 50,000 or so.
             let is_wine = file.file_stem().is_some_and(|name| name == "wine");
-            assert!(ledger.killed <= u64::from(is_wine) * (n / 5000), "{}: {}", file.display(), ledger.killed);
+            assert!(
+                ledger.killed <= u64::from(is_wine) * (n / 5000),
+                "{}: {}",
+                file.display(),
+                ledger.killed
+            );
             assert_eq!(outcome.census.photons(), n);
             // The accounts that errors are computed from are the ledger's own numbers.
             let accounts: Vec<u64> =

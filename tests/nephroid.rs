@@ -158,7 +158,10 @@ fn assert_ridges(label: &str, value: impl Fn(u32, bool, u32) -> f64) {
     for above in [true, false] {
         let off = ridge(|i, j| value(i, above, j));
         let cuts: usize = off.iter().sum();
-        println!("{label}, y {} 0: cuts with the ridge 0, 1... cells off: {off:?}", [">", "<"][usize::from(!above)]);
+        println!(
+            "{label}, y {} 0: cuts with the ridge 0, 1... cells off: {off:?}",
+            [">", "<"][usize::from(!above)]
+        );
         assert!(cuts > 40, "{label}: {cuts}");
         assert!(off.len() <= 2, "{label}: {off:?}");
     }

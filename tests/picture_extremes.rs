@@ -134,11 +134,8 @@ fn a_camera_in_the_plane_of_a_lit_plate_sees_numbers() {
         // At the level of the plate, beyond its border, and a hair above and below it.
         for height in [0.0, 1e-9, -1e-9] {
             let (from, to) = (DVec3::new(-5.0, 0.0, -1.0 + height), DVec3::new(0.0, 0.0, -1.0 + height));
-            let camera = CameraSpec {
-                bandwidth,
-                samples: 4,
-                ..CameraSpec::pinhole(from, to, DVec3::Z, 20.0, [3, 3])
-            };
+            let camera =
+                CameraSpec { bandwidth, samples: 4, ..CameraSpec::pinhole(from, to, DVec3::Z, 20.0, [3, 3]) };
             let film = pictured(&turned_beam(camera), 1 << 10, 4).film;
             let numbers = film.value.iter().flatten().chain(&film.standard_error).chain(&film.bias);
             assert!(numbers.clone().all(|x| x.is_finite()), "{bandwidth:?} {height}: {film:?}");
@@ -159,7 +156,10 @@ fn too_large_a_picture_is_refused_with_what_it_takes() {
             );
             let refused = refused.unwrap_err();
             assert_eq!(refused.kind(), Kind::Limit);
-            assert!(refused.to_string().contains(mib) && refused.to_string().contains("1024 MiB"), "{refused}");
+            assert!(
+                refused.to_string().contains(mib) && refused.to_string().contains("1024 MiB"),
+                "{refused}"
+            );
         }
     }
     assert_eq!(Film::<1>::memory_bytes([8192, 8192]), 96 << 26);
