@@ -51,7 +51,7 @@ cells = [8, 8]
 position = [0.3, -1.2, 0.8]
 look_at = [0.0, 0.0, 0.1]
 fov_deg = 45
-pixels = [40, 30]
+pixels = [24, 18]
 samples = 4
 {keys}
 "#
@@ -79,7 +79,7 @@ impl Folder {
     /// `caustix render LINE` here; the exit code and what was said.
     fn render(&self, line: &str) -> (i32, String) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        command.arg("render").args(line.split_whitespace()).args(["--photons", "2^16", "--replicates", "4"]);
+        command.arg("render").args(line.split_whitespace()).args(["--photons", "2^15", "--replicates", "4"]);
         let output = command.current_dir(self.0.path()).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     }
