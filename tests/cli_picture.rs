@@ -8,15 +8,16 @@ use std::process::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A glass ball over a table under a lamp and a panel, before a camera: `table` is the table's reflectance, `keys` more keys of
+/// A glass ball over a table under a beam and a panel, before a camera: `table` is the table's reflectance, `keys` more keys of
 /// the camera.
 fn ball(table: &str, keys: &str) -> String {
     format!(
         r#"
 [[emitter]]
 name = "lamp"
-type = "isotropic"
-position = [-0.3, 0.2, 1.0]
+type = "collimated"
+position = [0.0, 0.0, 1.0]
+radius = 0.2
 flux_lm = 100
 [[emitter]]
 name = "sky"
@@ -50,7 +51,7 @@ cells = [8, 8]
 position = [0.3, -1.2, 0.8]
 look_at = [0.0, 0.0, 0.1]
 fov_deg = 45
-pixels = [40, 30]
+pixels = [24, 18]
 samples = 4
 {keys}
 "#
@@ -78,7 +79,7 @@ impl Folder {
     /// `caustix render LINE` here; the exit code and what was said.
     fn render(&self, line: &str) -> (i32, String) {
         let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        command.arg("render").args(line.split_whitespace()).args(["--photons", "2^16", "--replicates", "4"]);
+        command.arg("render").args(line.split_whitespace()).args(["--photons", "2^15", "--replicates", "4"]);
         let output = command.current_dir(self.0.path()).output().unwrap();
         (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
     }
@@ -123,7 +124,7 @@ fn one_two_and_seven_threads_write_the_same_picture() {
         let passes = report["camera"]["passes"].as_u64().unwrap();
         println!("{name}: {passes} passes, {} photons kept", report["camera"]["photons_kept"]);
         assert!(passes >= least_passes, "{name}: {passes}");
-        assert!(report["camera"]["photons_kept"].as_u64().unwrap() > 1000, "{name}");
+        assert!(report["camera"]["photons_kept"].as_u64().unwrap() > 10_000, "{name}");
         for threads in [2, 7] {
             let (other_exr, other_png, _) = on(threads);
             assert!(other_exr == exr, "{name}: camera.exr on {threads} threads");
@@ -206,8 +207,11 @@ fn damaged_maps_and_those_of_another_run_are_refused_by_name_and_reason() {
         folder.refused(&format!("scene.toml --map {name}"), &["error", name, reason]);
     }
     // Whole, but of other photons: another seed, another number, another sequence, another scene.
-    for options in ["--seed 9", "--sequence halton", "--variant mc"] {
-        folder.refused(&format!("scene.toml --map photons.map {options}"), &["photons.map", "hash", "trace"]);
+    for options in ["--seed 9", "--sequence independent", "--variant mc"] {
+        folder.refused(
+            &format!("scene.toml --map photons.map {options}"),
+            &["photons.map", "hash", "trace the photons again"],
+        );
     }
     folder.scene("lower.toml", &ball(GREY, "").replace("0.0, 0.0, 0.25", "0.0, 0.0, 0.24"));
     folder.refused("lower.toml --map photons.map", &["photons.map", "hash", "the scene or a file of it"]);

@@ -12,9 +12,7 @@ use caustix::bsdf::Grey;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scene::Scene;
 use caustix::scene::build::build;
-use caustix::scene::description::{
-    BeamSection, Description, EmitterShape, ReliefDescription, ShapeDescription,
-};
+use caustix::scene::description::Description;
 use caustix::scene::file::read;
 use caustix::scene::receiver::Cells;
 use caustix::sequence::Sequence;
@@ -25,62 +23,9 @@ use closed_support::{run, scene_files};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Every length of a scene times `s`.
-fn scaled(mut d: Description, s: f64) -> Scene {
-    for e in &mut d.emitters {
-        e.position.value *= s;
-        match &mut e.shape {
-            EmitterShape::Collimated { section: BeamSection::Disc { radius } } => *radius *= s,
-            EmitterShape::Collimated { section: BeamSection::Rectangle { width, height } }
-            | EmitterShape::Panel { width, height } => {
-                *width *= s;
-                *height *= s;
-            }
-            EmitterShape::Photometric { .. } | EmitterShape::Isotropic => {}
-        }
-    }
-    for surface in &mut d.surfaces {
-        surface.transform.translate *= s;
-        match &mut surface.shape {
-            ShapeDescription::Mesh { .. } => surface.transform.scale *= s,
-            ShapeDescription::Rectangle { corner, edge_u, edge_v } => {
-                *corner *= s;
-                *edge_u *= s;
-                *edge_v *= s;
-            }
-            ShapeDescription::Box { min, max } => {
-                *min *= s;
-                *max *= s;
-            }
-            ShapeDescription::Sphere { center, radius } => {
-                *center *= s;
-                *radius *= s;
-            }
-            ShapeDescription::Paraboloid { vertex, focal_length, radius, .. } => {
-                *vertex *= s;
-                *focal_length *= s;
-                *radius *= s;
-            }
-            ShapeDescription::Heightfield(field) => {
-                field.origin *= s;
-                field.size = field.size.map(|x| x * s);
-                match &mut field.relief {
-                    ReliefDescription::Waves { waves, .. } => {
-                        for wave in waves {
-                            wave.amplitude *= s;
-                            wave.wavelength *= s;
-                        }
-                    }
-                    ReliefDescription::Noise { amplitude, octaves, .. } => {
-                        *amplitude *= s;
-                        octaves.iter_mut().for_each(|o| o.wavelength *= s);
-                    }
-                    ReliefDescription::Image { height, .. } => *height = height.map(|h| h * s),
-                }
-            }
-        }
-    }
-    build(&d).unwrap_or_else(|e| panic!("{e:?}"))
+/// A scene with every length times `s`.
+fn scaled(d: Description, s: f64) -> Scene {
+    build(&closed_support::scaled::scaled(d, s)).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
 /// The whole scene moved.

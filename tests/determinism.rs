@@ -24,7 +24,7 @@ use caustix::tally::Receivers;
 use caustix::transport::census::Exceptions;
 use caustix::transport::parallel::{How, Traced, trace_range};
 use caustix::transport::{Census, Ledger, walk};
-use closed_support::{project, run, scene_files};
+use closed_support::{every_scene_file, project, run_with_killed};
 
 /// Runs `caustix render` with these arguments into a new folder.
 fn render(folder: &Path, arguments: &[&str]) -> PathBuf {
@@ -97,6 +97,19 @@ fn reordered(text: &str, order: impl Fn(&mut Vec<String>)) -> String {
         .replace("\"opal_cover.obj\"", &format!("\"{}/scenes/opal_cover.obj\"", project().display()))
         .replace("\"prism.obj\"", &format!("\"{}/scenes/prism.obj\"", project().display()))
         .replace("\"room/", &format!("\"{}/scenes/room/", project().display()))
+        .replace("\"glassware/", &format!("\"{}/scenes/glassware/", project().display()))
+}
+
+/// A scene's text with a small picture, where it has one.
+fn with_small_picture(text: &str) -> String {
+    let of_camera = text.find("\n[camera]").unwrap_or(text.len());
+    let (scene, camera) = text.split_at(of_camera);
+    let lines = camera.lines().map(|line| match line.split_once(" = ") {
+        Some(("pixels", _)) => "pixels = [40, 30]\nsamples = 4",
+        Some(("samples", _)) => "",
+        _ => line,
+    });
+    scene.to_string() + &lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Channels as bits: the pixels beyond the last face of a mesh are NaN, which is not equal to itself.
@@ -111,9 +124,9 @@ fn bits(maps: &Maps) -> Vec<(&str, Vec<u32>)> {
 #[test]
 fn the_order_of_surfaces_changes_no_pixel() {
     let folder = tempfile::tempdir().unwrap();
-    for file in scene_files() {
+    for file in every_scene_file() {
         let name = file.file_stem().unwrap().to_str().unwrap();
-        let text = std::fs::read_to_string(&file).unwrap();
+        let text = with_small_picture(&std::fs::read_to_string(&file).unwrap());
         let maps = |label: &str, order: &dyn Fn(&mut Vec<String>)| -> Vec<Maps> {
             let scene = folder.path().join(format!("{name}-{label}.toml"));
             std::fs::write(&scene, reordered(&text, order)).unwrap();
@@ -221,16 +234,23 @@ fn the_tally_of_two_sets_is_the_merge_of_their_tallies() {
 
 #[test]
 fn the_ledger_closes_in_every_scene() {
-    for file in scene_files() {
+    for file in every_scene_file() {
         let scene = build(&read(&file).unwrap()).unwrap();
         for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
             let n = 3 * 5001;
-            let outcome = run(&scene, sequence, 5001, 3, seed);
+            let outcome = run_with_killed(&scene, sequence, 5001, 3, seed);
             let ledger = &outcome.ledger;
             assert_eq!((ledger.total_emitted(), ledger.total_ended()), (n, n), "{}", file.display());
             assert_eq!(ledger.emitted.iter().sum::<u64>(), n);
-            assert_eq!(ledger.absorbed.iter().sum::<u64>() + ledger.escaped, n);
-            assert_eq!(ledger.killed, 0);
+            assert_eq!(ledger.absorbed.iter().sum::<u64>() + ledger.escaped + ledger.killed, n);
+            // The bowl of the wine glass, faceted and clear, can keep a photon for good, one in 50,000 or so.
+            let is_wine = file.file_stem().is_some_and(|name| name == "wine");
+            assert!(
+                ledger.killed <= u64::from(is_wine) * (n / 5000),
+                "{}: {}",
+                file.display(),
+                ledger.killed
+            );
             assert_eq!(outcome.census.photons(), n);
             // The accounts that errors are computed from are the ledger's own numbers.
             let accounts: Vec<u64> =

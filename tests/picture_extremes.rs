@@ -184,7 +184,7 @@ edge_v = [0, 2, 0]
 [camera]
 position = [0, -2, 1]
 look_at = [0, 0, 0]
-fov_deg = 1
+fov_deg = 0.1
 "#;
 
 #[test]

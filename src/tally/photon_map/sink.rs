@@ -36,8 +36,12 @@ pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
     scene.bsdfs().iter().map(Bsdf::scatters).collect()
 }
 
-/// Photons of one block: a handle gives them to the store together, so that what it holds is never copied to grow.
-const BLOCK: usize = 1 << 8;
+/// Photons that a handle collects before it gives them to the store.
+const HANDFUL: usize = 1 << 8;
+
+/// Most photons of a block. A full one is large enough for allocators to map it by itself, so that its memory is the system's again
+/// when it is dropped; many small ones would stay with the process beside the map that they were copied into.
+const BLOCK: usize = 1 << 21;
 
 /// Photons kept, in blocks; any number of threads add to it, and the order of the blocks means nothing.
 #[derive(Debug)]
@@ -90,8 +94,13 @@ impl<const C: usize> PhotonStore<C> {
     /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair sample and is
     /// dropped.
     pub fn take(&mut self) -> Option<Kept<C>> {
-        let all =
-            [0, 1].map(|k| std::mem::take(self.blocks[k].get_mut().unwrap_or_else(PoisonError::into_inner)));
+        let all = [0, 1].map(|k| {
+            let blocks = self.blocks[k].get_mut().unwrap_or_else(PoisonError::into_inner);
+            if let Some(last) = blocks.last_mut() {
+                last.shrink_to_fit();
+            }
+            std::mem::take(blocks)
+        });
         *self.kept.get_mut() = 0;
         (!std::mem::take(self.overflowed.get_mut())).then_some(all)
     }
@@ -102,17 +111,32 @@ impl<const C: usize> PhotonStore<C> {
         PhotonSink { receivers, store: self, replicate: replicate & 0xffff, scattered: false, kept }
     }
 
-    fn put(&self, scattered: usize, block: Vec<Photon<C>>) {
-        if block.is_empty() {
-            return;
-        }
-        if self.kept.fetch_add(block.len(), Ordering::Relaxed) + block.len() > self.most {
+    fn put(&self, scattered: usize, photons: &[Photon<C>]) {
+        if self.kept.fetch_add(photons.len(), Ordering::Relaxed) + photons.len() > self.most {
             self.overflowed.store(true, Ordering::Relaxed);
         }
         // Once too many, all are dropped: the range is traced again in parts.
         if !self.overflowed.load(Ordering::Relaxed) {
-            self.blocks[scattered].lock().unwrap_or_else(PoisonError::into_inner).push(block);
+            add(&mut self.blocks[scattered].lock().unwrap_or_else(PoisonError::into_inner), photons);
         }
+    }
+}
+
+/// Adds photons to the last block, and to new ones when it is full. A block is as large as all before it, so none is ever copied to
+/// grow, and at most half of them is empty.
+fn add<const C: usize>(blocks: &mut Vec<Vec<Photon<C>>>, mut photons: &[Photon<C>]) {
+    while !photons.is_empty() {
+        let room = blocks.last().map_or(0, |block| block.capacity() - block.len());
+        if room == 0 {
+            let held: usize = blocks.iter().map(Vec::len).sum();
+            blocks.push(Vec::with_capacity(held.clamp(HANDFUL, BLOCK)));
+            continue;
+        }
+        let (now, later) = photons.split_at(room.min(photons.len()));
+        if let Some(block) = blocks.last_mut() {
+            block.extend_from_slice(now);
+        }
+        photons = later;
     }
 }
 
@@ -165,21 +189,19 @@ impl<const C: usize> PhotonSink<'_, '_, C> {
     #[inline]
     fn keep(&mut self, photon: Photon<C>) {
         let scattered = usize::from(photon.is_scattered());
-        let block = &mut self.kept[scattered];
-        block.push(photon);
-        if block.len() == BLOCK {
-            let full = std::mem::replace(block, Vec::with_capacity(BLOCK));
-            self.store.put(scattered, full);
+        let some = &mut self.kept[scattered];
+        some.push(photon);
+        if some.len() == HANDFUL {
+            self.store.put(scattered, some);
+            some.clear();
         }
     }
 }
 
 impl<const C: usize> Drop for PhotonSink<'_, '_, C> {
     fn drop(&mut self) {
-        for (scattered, block) in std::mem::take(&mut self.kept).into_iter().enumerate() {
-            let mut block = block;
-            block.shrink_to_fit();
-            self.store.put(scattered, block);
+        for (scattered, some) in self.kept.iter().enumerate() {
+            self.store.put(scattered, some);
         }
     }
 }
