@@ -1,0 +1,273 @@
+//! The bias of the photon map's pictures, measured: caustics by the map against the same light joined to the pinhole.
+//!
+//! Only light of L S+ D E is compared: what reached a scattering surface through mirrors and glass alone and is seen there directly.
+//! Direct light, emitters and light that was scattered before are in neither picture, so that no pixel's error is divided by
+//! light that the density estimate has no part in. The splat has no density bias; its standard error is known and is taken
+//! into account. Pixels through which the camera sees anything but scattering surfaces are left out: the splat does not see
+//! L S+ D S E.
+//!
+//! The map's error of one run is noise and bias. The mean over several seeds less the splat is its bias, with noise less by the root
+//! of their number.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec2;
+
+use crate::bsdf::Rgb;
+use crate::bsdf::reflectance::luminance;
+use crate::camera::splat::{Splat, SplatMoments, SplatSink};
+use crate::camera::{Film, Pass, Sums, View, render};
+use crate::error::Result;
+use crate::estimate::bandwidth;
+use crate::estimate::density::{Choice, Density};
+use crate::estimate::footprint::Footprints;
+use crate::run::Plan;
+use crate::run::tracer::Tracer;
+use crate::scene::Scene;
+use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS};
+use crate::tally::Receivers;
+use crate::tally::photon_map::sink::scattering_surfaces;
+use crate::tally::photon_map::{PhotonMap, PhotonStore};
+use crate::transport::{Arrival, Sink};
+
+/// Rays a pixel, along each side, that tell what it sees.
+const PROBES: u32 = 8;
+
+/// Relative standard error of the reference beyond which a pixel has no relative error: there is hardly any light.
+pub const MOST_REFERENCE_ERROR: f64 = 0.05;
+
+/// A picture without density bias.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Luminance, cd/m2, row by row.
+    pub value: Vec<f64>,
+    /// Its standard error, cd/m2.
+    pub standard_error: Vec<f64>,
+    /// Whether nothing but scattering surfaces is seen through the pixel, and directly.
+    pub seen: Vec<bool>,
+}
+
+impl Reference {
+    /// Pixels that are compared.
+    pub fn compared(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.value.len()).filter(|p| self.seen[*p])
+    }
+
+    /// Those among them that have a relative error.
+    pub fn lit(&self) -> impl Iterator<Item = usize> + '_ {
+        self.compared().filter(|&p| self.standard_error[p] < MOST_REFERENCE_ERROR * self.value[p])
+    }
+}
+
+/// A picture by the map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mapped {
+    /// Luminance, cd/m2, row by row.
+    pub value: Vec<f64>,
+    /// Its standard error, cd/m2.
+    pub standard_error: Vec<f64>,
+    /// Its bias figure, cd/m2.
+    pub bias: Vec<f64>,
+    /// Radius, m; 0 where the bandwidth has none.
+    pub radius_m: f64,
+}
+
+/// Passes on the arrivals of light that went through at least one event, none of them on a surface that scatters.
+struct CausticOnly<'r, 's> {
+    splat: SplatSink<'r, 's, 3>,
+    scatters: &'r [bool],
+    scattered: bool,
+}
+
+impl Sink<Rgb> for CausticOnly<'_, '_> {
+    fn arrive(&mut self, arrival: &Arrival<'_, Rgb>) {
+        if arrival.events == 0 {
+            self.scattered = false;
+        }
+        if arrival.events > 0 && !self.scattered {
+            self.splat.arrive(arrival);
+        }
+        self.scattered |= self.scatters[arrival.hit.surface.0 as usize];
+    }
+}
+
+/// The pixels through whose own squares nothing but scattering surfaces is seen, and directly; row by row.
+///
+/// # Errors
+/// A camera that sees nothing.
+pub fn seen_directly(scene: &Scene, spec: &CameraSpec) -> Result<Vec<bool>> {
+    let view = View::new(scene, spec, 0)?;
+    let scatters = scattering_surfaces(scene);
+    let at_once = |place: DVec2| {
+        let ray = view.pinhole().ray(place);
+        let hit = scene.geometry.nearest(ray.origin, ray.direction, &view.start(), &mut 0);
+        hit.is_some_and(|hit| scatters[hit.surface.0 as usize])
+    };
+    let [columns, rows] = spec.pixels;
+    // From edge to edge, both included.
+    let step = 1.0 / f64::from(PROBES - 1);
+    let pixel = |column: u32, row: u32| {
+        (0..PROBES * PROBES).all(|k| {
+            let [dx, dy] = [k % PROBES, k / PROBES].map(|i| step * f64::from(i));
+            at_once(DVec2::new(f64::from(column) + dx, f64::from(row) + dy))
+        })
+    };
+    Ok((0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).map(|(c, r)| pixel(c, r)).collect())
+}
+
+/// The caustics by splatting.
+///
+/// # Errors
+/// Those of tracing; a camera that sees nothing or is too large.
+pub fn splatted(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Reference> {
+    let mut splat = Splat::<3>::new(scene, spec)?;
+    let mut moments = SplatMoments::<3>::new(spec.pixels[0] as usize * spec.pixels[1] as usize);
+    let nobody = Receivers::new(&scene.geometry, &[]);
+    let scatters = scattering_surfaces(scene);
+    for replicate in 0..plan.replicates {
+        let n = plan.photons_per_replicate;
+        let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, n);
+        let sink = || CausticOnly { splat: splat.sink(nobody.sink()), scatters: &scatters, scattered: false };
+        tracer.trace_into(n, Rgb::WHITE, sink, &AtomicBool::new(false), &|_| {})?;
+        splat.close(&mut moments, true);
+    }
+    let photon_lm = scene.emitters.flux_lm() / plan.photons() as f64;
+    let r = f64::from(plan.replicates);
+    let sums = moments.sum.iter().map(|sum| luminance(*sum));
+    // R s^2 of the R partial sums.
+    let error = |y: f64, square: f64| (r / (r - 1.0) * (square - y * y / r).max(0.0)).sqrt() * photon_lm;
+    Ok(Reference {
+        standard_error: sums.clone().zip(&moments.square).map(|(y, square)| error(y, *square)).collect(),
+        value: sums.map(|y| y * photon_lm).collect(),
+        seen: seen_directly(scene, spec)?,
+    })
+}
+
+/// The caustics by the photon map, as `method = "map"` makes them of the same photons.
+///
+/// # Errors
+/// Those of tracing; a camera that sees nothing or is too large.
+pub fn mapped(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Mapped> {
+    let mut store = PhotonStore::<3>::new(scene);
+    let nobody = Receivers::new(&scene.geometry, &[]);
+    for replicate in 0..plan.replicates {
+        let n = plan.photons_per_replicate;
+        let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, n);
+        let sink = || store.sink(nobody.sink(), replicate);
+        tracer.trace_into(n, Rgb::WHITE, sink, &AtomicBool::new(false), &|_| {})?;
+    }
+    let frame = store.frame();
+    let [caustic, _] = store.take().unwrap_or_default();
+    let map = PhotonMap::build(caustic.concat(), frame, 0.0);
+    let photon_lm = scene.emitters.flux_lm() / plan.photons() as f64;
+    let footprints = Arc::new(Footprints::new(&scene.geometry));
+    let bandwidth = match spec.bandwidth {
+        Bandwidth::Automatic if !map.photons().is_empty() => {
+            let found = bandwidth::choose(&footprints, &map, spec.kernel, plan.replicates, 1.0);
+            Bandwidth::AtLeast { radius_m: found.radius_m, neighbours: FEWEST_NEIGHBOURS }
+        }
+        named => named,
+    };
+    let radius_m = match bandwidth {
+        Bandwidth::AtLeast { radius_m, .. }
+        | Bandwidth::Radius(radius_m)
+        | Bandwidth::Progressive(radius_m) => radius_m,
+        Bandwidth::Automatic | Bandwidth::Nearest(_) => 0.0,
+    };
+    let map = map.rebuilt(radius_m);
+    let choice = Choice { bandwidth, ..Choice::of(spec, plan.replicates) };
+    let densities = [Density::on(footprints, &map, photon_lm, choice)];
+    let mut sums = Sums::new(spec.pixels)?;
+    let view = View::new(scene, spec, plan.seed)?;
+    let pass = Pass::photons(&densities, 0..plan.replicates, true);
+    render(&view, &pass, &mut sums, &AtomicBool::new(false), &|_| {})?;
+    let Film { value, standard_error, bias, .. } = sums.finish();
+    Ok(Mapped { value: value.into_iter().map(luminance).collect(), standard_error, bias, radius_m })
+}
+
+/// What pictures of several seeds say at one number of photons. Parts and medians are over pixels and seeds; relative numbers
+/// are fractions of the reference, over its lit pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Photons of a picture.
+    pub photons: u64,
+    /// Mean radius, m.
+    pub radius_m: f64,
+    /// Median size of map - splat.
+    pub error: f64,
+    /// Median standard error of the map.
+    pub standard_error: f64,
+    /// Median bias figure.
+    pub figure: f64,
+    /// Median size of the bias: that of the mean over the seeds less the splat, noise of both included.
+    pub bias: f64,
+    /// Median standard error of that bias.
+    pub bias_error: f64,
+    /// Root mean square of the bias less what noise adds to it, as a fraction of the mean luminance; 0 where that is not positive.
+    pub bias_nrms: f64,
+    /// Part of the pixels where the bias figure is at least map - splat.
+    pub figure_covers_error: f64,
+    /// Part of the pixels where the bias figure is at least the bias.
+    pub figure_covers_bias: f64,
+    /// Part of the pixels that are compared, lit or not, where map - splat is within the bias figure and three standard errors
+    /// of both.
+    pub agree: f64,
+}
+
+impl Row {
+    /// Of pictures of so many photons, one a seed.
+    pub fn new(reference: &Reference, photons: u64, pictures: &[Mapped]) -> Self {
+        let lit: Vec<usize> = reference.lit().collect();
+        let truth = |p: usize| reference.value[p];
+        let of_all = |of: &dyn Fn(&Mapped, usize) -> f64| -> Vec<f64> {
+            pictures.iter().flat_map(|m| lit.iter().map(move |&p| of(m, p))).collect()
+        };
+        let share = |of: &dyn Fn(&Mapped, usize) -> bool| {
+            mean(&of_all(&|m, p| if of(m, p) { 1.0 } else { 0.0 }))
+        };
+        let bias = |p: usize| mean_bias(reference, pictures, p);
+        let within = |m: &Mapped, p: usize| {
+            let error = m.standard_error[p].hypot(reference.standard_error[p]);
+            (m.value[p] - truth(p)).abs() <= m.bias[p] + 3.0 * error
+        };
+        let agreeing = |m: &Mapped| mean(&reference.compared().map(|p| f64::from(u8::from(within(m, p)))).collect::<Vec<_>>());
+        let squares: f64 = lit.iter().map(|&p| bias(p)[0].powi(2) - bias(p)[1].powi(2)).sum();
+        let light: f64 = lit.iter().map(|&p| truth(p)).sum();
+        Self {
+            photons,
+            radius_m: mean(&pictures.iter().map(|m| m.radius_m).collect::<Vec<_>>()),
+            error: median(of_all(&|m, p| (m.value[p] - truth(p)).abs() / truth(p))),
+            standard_error: median(of_all(&|m, p| m.standard_error[p] / truth(p))),
+            figure: median(of_all(&|m, p| m.bias[p] / truth(p))),
+            bias: median(lit.iter().map(|&p| bias(p)[0].abs() / truth(p)).collect()),
+            bias_error: median(lit.iter().map(|&p| bias(p)[1] / truth(p)).collect()),
+            bias_nrms: (squares.max(0.0) * lit.len() as f64).sqrt() / light,
+            figure_covers_error: share(&|m, p| (m.value[p] - truth(p)).abs() <= m.bias[p]),
+            figure_covers_bias: share(&|m, p| bias(p)[0].abs() <= m.bias[p]),
+            agree: mean(&pictures.iter().map(agreeing).collect::<Vec<_>>()),
+        }
+    }
+}
+
+/// Mean over the seeds of map - splat in a pixel, and its standard error.
+fn mean_bias(reference: &Reference, pictures: &[Mapped], pixel: usize) -> [f64; 2] {
+    let n = pictures.len() as f64;
+    let centre = pictures.iter().map(|m| m.value[pixel]).sum::<f64>() / n;
+    let squares: f64 = pictures.iter().map(|m| (m.value[pixel] - centre).powi(2)).sum();
+    let error = (squares / (n * (n - 1.0))).sqrt().hypot(reference.standard_error[pixel]);
+    [centre - reference.value[pixel], error]
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// The lower median; NaN of nothing.
+fn median(mut values: Vec<f64>) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let middle = (values.len() - 1) / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
