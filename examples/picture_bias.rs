@@ -31,6 +31,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             let pictures = (1..=seeds)
                 .map(|seed| Ok(mapped(&scene, &spec, &plan(n, 8, seed)?)?))
                 .collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+            if let Ok(f) = std::env::var("DUMP") { if !fixed {
+                let mut t = String::new();
+                for (k, m) in pictures.iter().enumerate() { for p in reference.compared() { t += &format!("{m_} {k} {p} {} {} {} {} {}\n", reference.value[p], reference.standard_error[p], m.value[p], m.standard_error[p], m.bias[p], m_ = n.ilog2()); } }
+                std::fs::write(format!("{f}_{name}_{}.txt", n.ilog2()), t)?;
+            } }
             let row = Row::new(&reference, n, &pictures);
             base = if base == 0.0 { row.radius_m } else { base };
             println!("2^{m} r {:.5} err {:.4} se {:.4} fig {:.4} bias {:.4} ({:.4}) nrms {:.4} cov.err {:.3} cov.bias {:.3} agree {:.4} {:?}", row.radius_m, row.error, row.standard_error, row.figure, row.bias, row.bias_error, row.bias_nrms, row.figure_covers_error, row.figure_covers_bias, row.agree, start.elapsed());
