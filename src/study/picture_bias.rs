@@ -115,7 +115,10 @@ pub fn seen_directly(scene: &Scene, spec: &CameraSpec) -> Result<Vec<bool>> {
             at_once(DVec2::new(f64::from(column) + dx, f64::from(row) + dy))
         })
     };
-    Ok((0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).map(|(c, r)| pixel(c, r)).collect())
+    Ok((0..rows)
+        .flat_map(|row| (0..columns).map(move |column| (column, row)))
+        .map(|(c, r)| pixel(c, r))
+        .collect())
 }
 
 /// The caustics by splatting.
@@ -233,12 +236,15 @@ pub struct Row {
     pub bias: f64,
     /// Median standard error of that bias.
     pub bias_error: f64,
-    /// Root mean square of the bias less what noise adds to it, as a fraction of the mean luminance; 0 where that is not positive.
-    pub bias_nrms: f64,
+    /// Root mean square of the bias, less what noise adds to its square; 0 where that leaves nothing.
+    pub bias_rms: f64,
     /// Part of the pixels where the bias figure is at least map - splat.
     pub figure_covers_error: f64,
     /// Part of the pixels where the bias figure is at least the bias.
     pub figure_covers_bias: f64,
+    /// The same over the pixels alone whose bias is beyond three of its own standard errors: there are such pixels, and where noise
+    /// hides the bias it is covered sooner. NaN where there are none.
+    pub figure_covers_clear_bias: f64,
     /// Part of the pixels that are compared, lit or not, where map - splat is within the bias figure and three standard errors
     /// of both.
     pub agree: f64,
@@ -252,17 +258,25 @@ impl Row {
         let of_all = |of: &dyn Fn(&Mapped, usize) -> f64| -> Vec<f64> {
             pictures.iter().flat_map(|m| lit.iter().map(move |&p| of(m, p))).collect()
         };
-        let share = |of: &dyn Fn(&Mapped, usize) -> bool| {
-            mean(&of_all(&|m, p| if of(m, p) { 1.0 } else { 0.0 }))
-        };
-        let bias = |p: usize| mean_bias(reference, pictures, p);
+        let biases: Vec<[f64; 2]> =
+            (0..reference.value.len()).map(|p| mean_bias(reference, pictures, p)).collect();
+        let bias = |p: usize| biases[p];
         let within = |m: &Mapped, p: usize| {
             let error = m.standard_error[p].hypot(reference.standard_error[p]);
             (m.value[p] - truth(p)).abs() <= m.bias[p] + 3.0 * error
         };
-        let agreeing = |m: &Mapped| mean(&reference.compared().map(|p| f64::from(u8::from(within(m, p)))).collect::<Vec<_>>());
-        let squares: f64 = lit.iter().map(|&p| bias(p)[0].powi(2) - bias(p)[1].powi(2)).sum();
-        let light: f64 = lit.iter().map(|&p| truth(p)).sum();
+        let agreeing = |m: &Mapped| {
+            mean(&reference.compared().map(|p| f64::from(u8::from(within(m, p)))).collect::<Vec<_>>())
+        };
+        let clear = |p: usize| bias(p)[0].abs() > 3.0 * bias(p)[1];
+        let pairs_covered = |which: &dyn Fn(usize) -> bool| {
+            let covered = |m: &Mapped, p: usize| f64::from(u8::from(bias(p)[0].abs() <= m.bias[p]));
+            let covered = &covered;
+            let some: Vec<usize> = lit.iter().copied().filter(|&p| which(p)).collect();
+            mean(&pictures.iter().flat_map(|m| some.iter().map(move |&p| covered(m, p))).collect::<Vec<_>>())
+        };
+        let square = |p: usize| (bias(p)[0].powi(2) - bias(p)[1].powi(2)) / truth(p).powi(2);
+        let squares = mean(&lit.iter().map(|&p| square(p)).collect::<Vec<_>>());
         Self {
             photons,
             radius_m: mean(&pictures.iter().map(|m| m.radius_m).collect::<Vec<_>>()),
@@ -271,9 +285,12 @@ impl Row {
             figure: median(of_all(&|m, p| m.bias[p] / truth(p))),
             bias: median(lit.iter().map(|&p| bias(p)[0].abs() / truth(p)).collect()),
             bias_error: median(lit.iter().map(|&p| bias(p)[1] / truth(p)).collect()),
-            bias_nrms: (squares.max(0.0) * lit.len() as f64).sqrt() / light,
-            figure_covers_error: share(&|m, p| (m.value[p] - truth(p)).abs() <= m.bias[p]),
-            figure_covers_bias: share(&|m, p| bias(p)[0].abs() <= m.bias[p]),
+            bias_rms: squares.max(0.0).sqrt(),
+            figure_covers_error: mean(&of_all(&|m, p| {
+                f64::from(u8::from((m.value[p] - truth(p)).abs() <= m.bias[p]))
+            })),
+            figure_covers_bias: pairs_covered(&|_| true),
+            figure_covers_clear_bias: pairs_covered(&clear),
             agree: mean(&pictures.iter().map(agreeing).collect::<Vec<_>>()),
         }
     }
@@ -299,4 +316,74 @@ fn median(mut values: Vec<f64>) -> f64 {
     }
     let middle = (values.len() - 1) / 2;
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Exponent of N with which a value of the rows falls: the slope of its logarithm by least squares.
+pub fn rate(rows: &[Row], value: impl Fn(&Row) -> f64) -> f64 {
+    let points: Vec<[f64; 2]> =
+        rows.iter().map(|r| [libm::log(r.photons as f64), libm::log(value(r))]).collect();
+    let centre = [0, 1].map(|k| mean(&points.iter().map(|p| p[k]).collect::<Vec<_>>()));
+    let moment = |k: usize| points.iter().map(|p| (p[0] - centre[0]) * (p[k] - centre[k])).sum::<f64>();
+    moment(1) / moment(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pictures of 1000 pixels of 10 cd/m2 with this bias, this noise (rectangular) and this bias figure.
+    fn pictures(bias: f64, noise: f64, figure: f64, seeds: u64) -> (Reference, Vec<Mapped>) {
+        let n = 1000;
+        let reference =
+            Reference { value: vec![10.0; n], standard_error: vec![1e-6; n], seen: vec![true; n] };
+        let picture = |seed: u64| {
+            let u = |p: usize| (((p as u64 * 8 + seed) * 40_503) % 65_536) as f64 / 65_536.0 - 0.5;
+            Mapped {
+                value: (0..n).map(|p| 10.0 + bias + noise * 12f64.sqrt() * u(p)).collect(),
+                standard_error: vec![noise; n],
+                bias: vec![figure; n],
+                radius_m: 0.5,
+            }
+        };
+        (reference, (0..seeds).map(picture).collect())
+    }
+
+    #[test]
+    fn bias_is_told_from_noise() {
+        let (reference, all) = pictures(0.2, 0.4, 0.1, 8);
+        let row = Row::new(&reference, 64, &all);
+        assert!((row.bias_rms - 0.02).abs() < 0.004, "{row:?}");
+        assert!((row.standard_error - 0.04).abs() < 1e-12 && (row.figure - 0.01).abs() < 1e-12);
+        assert!(row.figure_covers_bias < 0.4 && row.agree > 0.99, "{row:?}");
+        let (reference, all) = pictures(0.2, 1e-9, 0.199, 2);
+        let row = Row::new(&reference, 64, &all);
+        assert_eq!([row.figure_covers_error, row.figure_covers_bias, row.figure_covers_clear_bias], [0.0; 3]);
+        let (reference, all) = pictures(-0.2, 1e-9, 0.201, 2);
+        let row = Row::new(&reference, 64, &all);
+        assert_eq!([row.figure_covers_error, row.figure_covers_bias, row.agree], [1.0; 3]);
+    }
+
+    #[test]
+    fn what_is_not_seen_or_hardly_lit_does_not_count() {
+        let (mut reference, mut all) = pictures(0.0, 1e-9, 0.1, 2);
+        reference.seen[0] = false;
+        reference.standard_error[1] = 1.0;
+        for picture in &mut all {
+            picture.value[0] = 1e3;
+            picture.value[1] = 11.0;
+            picture.bias[1] = 0.0;
+        }
+        assert_eq!((reference.compared().count(), reference.lit().count()), (999, 998));
+        let row = Row::new(&reference, 64, &all);
+        assert_eq!([row.agree, row.figure_covers_error], [1.0; 2]);
+    }
+
+    #[test]
+    fn a_power_law_has_its_rate() {
+        let (reference, all) = pictures(0.2, 0.4, 0.1, 2);
+        let row =
+            |photons: u64| Row { figure: (photons as f64).powf(-0.3), ..Row::new(&reference, photons, &all) };
+        let rows = [row(100), row(1000), row(50_000)];
+        assert!((rate(&rows, |r| r.figure) + 0.3).abs() < 1e-12);
+    }
 }
