@@ -16,6 +16,8 @@ pub struct View {
     pub name: &'static str,
     pub scene: Scene,
     pub spec: CameraSpec,
+    /// Whether a beam lights nothing but what is seen: photons cost little.
+    pub in_beam: bool,
 }
 
 /// A file of the project.
@@ -30,7 +32,7 @@ pub fn wavy_glass(columns: u32) -> Built {
     let scene = build::build(&described("scenes/wavy_glass_seen.toml")?)?;
     let (position, look_at) = (DVec3::new(0.0, -0.8, 0.7), DVec3::new(0.0, 0.1, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 50.0, [columns, columns * 3 / 4]);
-    Ok(View { name: "wavy glass", scene, spec: CameraSpec { filter: Filter::Box, ..spec } })
+    Ok(View { name: "wavy glass", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: false })
 }
 
 /// A glass ball in a beam of its own width, and the floor behind it.
@@ -38,7 +40,7 @@ pub fn ball(columns: u32) -> Built {
     let scene = build::build(&file::parse(BALL, "ball", source::Base::BuiltIn)?)?;
     let (position, look_at) = (DVec3::new(0.5, 0.0, 0.6), DVec3::new(0.22, 0.0, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 32.0, [columns, columns * 3 / 4]);
-    Ok(View { name: "ball", scene, spec: CameraSpec { filter: Filter::Box, ..spec } })
+    Ok(View { name: "ball", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: true })
 }
 
 /// The metal ring as its own camera sees it, without the sky, whose mirror image on the table has no caustic.
@@ -48,7 +50,7 @@ pub fn ring(columns: u32) -> Built {
     let scene = build::build(&description)?;
     let (position, look_at) = (DVec3::new(0.02, -0.26, 0.22), DVec3::new(0.01, 0.0, 0.006));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 32.0, [columns, columns * 3 / 4]);
-    Ok(View { name: "ring", scene, spec: CameraSpec { filter: Filter::Box, ..spec } })
+    Ok(View { name: "ring", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: false })
 }
 
 /// A pane of uneven glass in a beam narrower than it, and the floor below it, seen from below the pane.
@@ -56,7 +58,7 @@ pub fn pane(columns: u32) -> Built {
     let scene = build::build(&file::parse(PANE, "pane", source::Base::BuiltIn)?)?;
     let (position, look_at) = (DVec3::new(0.0, -0.24, 0.27), DVec3::new(0.0, 0.0, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 40.0, [columns, columns * 3 / 4]);
-    Ok(View { name: "pane", scene, spec: CameraSpec { filter: Filter::Box, ..spec } })
+    Ok(View { name: "pane", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: true })
 }
 
 /// 2^m photons.
