@@ -16,10 +16,10 @@ fn reference(view: &View) -> Reference {
     splatted(&view.scene, &view.spec, &plan(22, 16, 1000).unwrap()).unwrap()
 }
 
-fn row(view: &View, reference: &Reference, bandwidth: Bandwidth, m: u32) -> Row {
+fn row(view: &View, reference: &Reference, bandwidth: Bandwidth, m: u32, seeds: u64) -> Row {
     let spec = CameraSpec { bandwidth, ..view.spec.clone() };
     let picture = |seed| mapped(&view.scene, &spec, &plan(m, REPLICATES, seed).unwrap()).unwrap();
-    let row = Row::new(reference, 1 << m, &(1..=SEEDS).map(picture).collect::<Vec<_>>());
+    let row = Row::new(reference, 1 << m, &(1..=seeds).map(picture).collect::<Vec<_>>());
     println!("{} {bandwidth:?}: {row:.4?}", view.name);
     row
 }
@@ -28,7 +28,7 @@ fn row(view: &View, reference: &Reference, bandwidth: Bandwidth, m: u32) -> Row 
 fn check(view: &View) {
     let reference = reference(view);
     assert!(reference.lit().count() > 400);
-    let rows = LADDER.map(|m| row(view, &reference, Bandwidth::Automatic, m));
+    let rows = LADDER.map(|m| row(view, &reference, Bandwidth::Automatic, m, SEEDS));
     for row in &rows {
         assert!(row.agree >= 0.95, "{row:?}");
         assert!(row.figure_covers_bias >= 0.68, "{row:?}");
@@ -44,8 +44,8 @@ fn check(view: &View) {
     assert!(figure < -1.0 / 3.0 && figure > -0.75, "{figure}");
     // A radius told to shrink as N^(-1/6): the bias grows as it at edges and as its square where the density is smooth.
     let shrunk = rows[0].radius_m * libm::exp2(-f64::from(LADDER[2] - LADDER[0]) / 6.0);
-    let narrow = row(view, &reference, Bandwidth::Radius(shrunk), LADDER[2]);
-    let wide = row(view, &reference, Bandwidth::Radius(rows[0].radius_m), LADDER[0]);
+    let narrow = row(view, &reference, Bandwidth::Radius(shrunk), LADDER[2], SEEDS / 2);
+    let wide = row(view, &reference, Bandwidth::Radius(rows[0].radius_m), LADDER[0], SEEDS);
     let bias = rate(&[wide, narrow], Row::bias_without_noise);
     println!("{}: bias ~ N^{bias:.3} for a radius ~ N^(-1/6)", view.name);
     assert!(bias < -1.0 / 6.0 && bias > -0.40, "{bias}");
