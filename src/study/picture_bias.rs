@@ -240,8 +240,8 @@ pub struct Row {
     pub figure_covers_error: f64,
     /// Part of the pixels where the bias figure is at least the bias.
     pub figure_covers_bias: f64,
-    /// The same over the pixels alone whose bias is beyond three of its own standard errors: there are such pixels, and where noise
-    /// hides the bias it is covered sooner. NaN where there are none.
+    /// The same over the pixels alone whose bias is beyond three of its own standard errors, where it is not mostly noise. NaN
+    /// where there are none.
     pub figure_covers_clear_bias: f64,
     /// Part of the pixels that are compared, lit or not, where map - splat is within the bias figure and three standard errors
     /// of both.
@@ -293,7 +293,7 @@ impl Row {
 
 impl Row {
     /// [`Self::bias`] with the noise taken out in squares, as it is for biases and noise that are normally distributed over the
-    /// pixels, the median of whose size is [`MEDIAN_OF_NORMAL`] of their standard deviation; 0 where noise leaves nothing.
+    /// pixels, the median of whose size is 0.674 of their standard deviation; 0 where noise leaves nothing.
     pub fn bias_without_noise(&self) -> f64 {
         let noise = MEDIAN_OF_NORMAL * self.bias_error;
         (self.bias * self.bias - noise * noise).max(0.0).sqrt()
