@@ -74,7 +74,7 @@ fn measured(view: &views::View) -> Result<Vec<Series>, Box<dyn Error>> {
             println!("{}", line(m, &row));
             rows.push(row);
         }
-        let rates: [(&str, fn(&Row) -> f64); 3] =
+        let rates: [Rate; 3] =
             [("radius", |r| r.radius_m), ("bias figure", |r| r.figure), ("bias", Row::bias_without_noise)];
         for (name, value) in rates {
             println!("  {name} ~ N^{:.2}", rate(&rows, value));
@@ -83,6 +83,9 @@ fn measured(view: &views::View) -> Result<Vec<Series>, Box<dyn Error>> {
     }
     Ok(all)
 }
+
+/// What falls with the number of photons: name, number.
+type Rate = (&'static str, fn(&Row) -> f64);
 
 const HEADER: &str = "| photons | radius | error | standard error | bias figure | bias with noise (its error) | bias | figure covers \
                       error | bias | clear bias | agree |";
