@@ -4,7 +4,7 @@
 //! [`reference`](mod@reference) traces what they are measured against; [`runs`] traces one point set of one algorithm and
 //! takes the errors at every number of photons of a ladder; [`account`] predicts the coordinates a photon uses from the
 //! events it goes through; [`results`] holds all that, [`fit`] and [`table`] are what follows from it. [`room`] compares sequences in
-//! a scene whose photons are reflected a fixed number of times.
+//! a scene whose photons are reflected a fixed number of times; [`picture_bias`] measures the photon map against the splat.
 
 pub mod norms;
 pub mod fit;
@@ -12,6 +12,7 @@ pub mod results;
 pub mod table;
 pub mod account;
 pub mod cells;
+pub mod picture_bias;
 pub mod reference;
 pub mod room;
 pub mod runs;
