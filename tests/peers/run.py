@@ -170,6 +170,8 @@ def picture_peer(arguments, picture):
 def cameras(arguments):
     """Every picture; True for each channel of it that agrees."""
     for name, picture in PICTURES.items():
+        if not name.startswith(arguments.only):
+            continue
         text, theirs = picture_peer(arguments, picture)
         ours = caustix(arguments, f"{text}{picture.settings}\n", arguments.output / name)
         for channel in picture.channels:
@@ -180,6 +182,8 @@ def cameras(arguments):
 def camera_faults(arguments):
     """Every fault of a picture; True for each that is found."""
     for number, (name, right, wrong, what) in enumerate(PICTURE_FAULTS):
+        if not name.startswith(arguments.only):
+            continue
         picture = PICTURES[name]
         text, theirs = picture_peer(arguments, picture)
         wrong_text = changed(text, right, wrong)
@@ -206,6 +210,7 @@ def main():
     parser.add_argument("--caustix", default=HERE / "../../target/release/caustix", help="the program")
     parser.add_argument("--photons", default="2^20", help="photons of each of our runs")
     parser.add_argument("--runs", type=int, default=16, help="runs of ours, and renders of the peer's")
+    parser.add_argument("--only", default="", help="only pictures whose name begins so")
     parser.add_argument("-o", "--output", type=Path, default=Path("peers-out"))
     arguments = parser.parse_args()
     jobs = {"receivers": receivers, "cameras": cameras, "faults": faults, "camera-faults": camera_faults}
