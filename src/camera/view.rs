@@ -53,6 +53,21 @@ impl<'s> View<'s> {
         Ok(Self { scene, spec: spec.clone(), pinhole, start: Whereabouts::start(behind), seed })
     }
 
+    /// The projection.
+    pub fn pinhole(&self) -> &Pinhole {
+        &self.pinhole
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'s Scene {
+        self.scene
+    }
+
+    /// The side state of rays that start at the camera.
+    pub fn start(&self) -> Whereabouts {
+        self.start
+    }
+
     /// The camera.
     pub fn spec(&self) -> &CameraSpec {
         &self.spec
