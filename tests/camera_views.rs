@@ -5,7 +5,7 @@ mod camera_support;
 mod closed_support;
 
 use std::f64::consts::PI;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use camera_support::*;
 use caustix::camera::{Film, Pass, Sums, View, render};
@@ -243,7 +243,7 @@ fn passes_add_up_to_the_picture_of_all_photons() {
     let view = View::new(&scene, &spec, 3).unwrap();
     let mut sums = Sums::<1>::new(spec.pixels).unwrap();
     let mut add = |pass: &Pass<'_, 1>| {
-        assert!(render(&view, pass, &mut sums, &AtomicBool::new(false), &|_| {}).unwrap().complete);
+        assert!(render(&view, pass, &mut sums, &AtomicBool::new(false), &|_| {}).unwrap().unseen == 0);
     };
     // Replicates 0 to 4; half of replicate 5's photons and the other half; the rest.
     let density = |map| Density::fixed(&scene.geometry, map, photon_lm, 0.2);
@@ -275,12 +275,27 @@ fn one_replicate_or_one_sample_knows_no_error() {
 }
 
 #[test]
-fn an_interrupted_pass_says_so() {
+fn an_interrupted_pass_leaves_what_it_saw_and_says_what_it_did_not_see() {
     let (scene, spec) = mixed();
+    let spec = CameraSpec { pixels: [40, 24], ..spec };
     let view = View::new(&scene, &spec, 3).unwrap();
+    let whole = pass(&view, &Pass::whole(&[], 0));
+    let interrupt = AtomicBool::new(false);
     let mut sums = Sums::<1>::new(spec.pixels).unwrap();
-    let done = render(&view, &Pass::emission(), &mut sums, &AtomicBool::new(true), &|_| {}).unwrap();
-    assert!(!done.complete);
+    let after_a_tile = |_| interrupt.store(true, Ordering::Relaxed);
+    let done = render(&view, &Pass::whole(&[], 0), &mut sums, &interrupt, &after_a_tile).unwrap();
+    let film = sums.finish();
+    let unseen: Vec<bool> = film.standard_error.iter().map(|e| e.is_nan()).collect();
+    let number = unseen.iter().filter(|u| **u).count();
+    assert!(number > 0 && number < 960, "{number}");
+    assert_eq!(done.unseen, number as u64);
+    for (i, unseen) in unseen.into_iter().enumerate() {
+        if unseen {
+            assert!(film.value[i] == [0.0] && film.bias[i].is_nan());
+        } else {
+            assert_eq!((film.value[i], film.standard_error[i]), (whole.value[i], whole.standard_error[i]));
+        }
+    }
 }
 
 #[test]

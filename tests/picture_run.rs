@@ -147,14 +147,24 @@ fn kept_photons_give_the_picture_again_bit_for_bit() {
     assert_eq!(kept.photons.len() as u64, fresh.summary.photons_kept);
     let again = picture_of_saved(&scene, &plan, kept.clone(), unwatched(&AtomicBool::new(false))).unwrap();
     assert!(bits(&again.film) == bits(&fresh.film));
-    assert!(again.summary.from_file);
     let mut strange = kept;
     strange.photons[5].primitive = 1000;
     let refused = picture_of_saved(&scene, &plan, strange, unwatched(&AtomicBool::new(false)));
     assert_eq!(refused.unwrap_err().kind(), Kind::Range);
     let small = ball_on_table(grey(0.4), 1 << 16, true);
-    let too_many = trace_picture(&small, &plan, true, unwatched(&AtomicBool::new(false)));
-    assert_eq!(too_many.unwrap_err().kind(), Kind::Limit);
+    // Photons that are too many are not handed out; all else is as without asking.
+    let (asked, too_many) = pictured(&small, &plan, true);
+    let (_, unasked) = pictured(&small, &plan, false);
+    assert!(too_many.photons.is_none() && too_many.summary.passes > 1, "{:?}", too_many.summary);
+    assert_eq!(asked.photons, 1 << 15);
+    let (sum, expected) = (total(&too_many.film), total(&unasked.film));
+    assert!((sum / expected - 1.0).abs() < 1e-12, "{sum} {expected}");
+    // Room for all but not for what is foretold (an eighth more and some): kept all the same.
+    let needed = fresh.summary.photons_kept * (2 * 28 + 8);
+    let tight = ball_on_table(grey(0.4), needed + needed / 100, true);
+    let (_, all) = pictured(&tight, &plan, true);
+    assert!(all.summary.passes == 1 && bits(&all.film) == bits(&fresh.film));
+    assert_eq!(all.photons.unwrap().photons.len() as u64, fresh.summary.photons_kept);
 }
 
 /// A run on one thread that is interrupted once this many photons are done.
@@ -188,6 +198,93 @@ fn an_interrupted_run_leaves_the_picture_of_what_was_traced() {
     assert!(parts.summary.photons >= outcome.photons);
     let (sum, expected) = (total(&parts.film), total(&two.film));
     assert!((sum / expected - 1.0).abs() < 0.02, "{sum} {expected}");
+}
+
+/// A run whose camera is interrupted in its `pass`th pass, on one thread.
+fn interrupted_in_pass(pass: u32, memory: u64, plan: &Plan) -> (Outcome, Picture<1>) {
+    let interrupt = AtomicBool::new(false);
+    let (in_pass, of_pass) = (AtomicU64::new(1), AtomicU64::new(0));
+    let camera = |part: f64| {
+        // Parts of a pass rise to 1.
+        if part.to_bits() < of_pass.swap(part.to_bits(), Ordering::Relaxed) {
+            in_pass.fetch_add(1, Ordering::Relaxed);
+        }
+        if in_pass.load(Ordering::Relaxed) == u64::from(pass) {
+            interrupt.store(true, Ordering::Relaxed);
+        }
+    };
+    let watch = Watch { interrupt: &interrupt, photons: &|_| {}, camera: &camera };
+    let mut scene = ball_on_table(grey(0.4), memory, true);
+    let spec = scene.camera.as_mut().unwrap();
+    spec.pixels = [36, 20];
+    let (outcome, picture) = on_threads(1, || trace_picture(&scene, plan, false, watch)).unwrap();
+    let AnyPicture::Grey(picture) = picture else { panic!("a grey scene") };
+    (outcome, picture)
+}
+
+#[test]
+fn an_interrupt_while_the_camera_looks_costs_neither_receivers_nor_the_pixels_seen() {
+    let four = plan(1 << 16, 4);
+    let bare = ball_on_table(grey(0.4), ROOM, false);
+    let without = trace(&bare, &four, &AtomicBool::new(false), &|_| {}).unwrap();
+    // In the only pass: all is traced, a tile is seen.
+    let (outcome, picture) = interrupted_in_pass(1, ROOM, &four);
+    assert_eq!((outcome.stopped_by, &outcome.cells), (StoppedBy::Photons, &without.cells));
+    assert_eq!(picture.summary.pixels_unseen, 36 * 20 - 256);
+    assert_eq!(picture.film.standard_error.iter().filter(|e| e.is_finite()).count(), 256);
+    // In one before the last: tracing ends, and what there is by then is seen wholly.
+    let (outcome, picture) = interrupted_in_pass(2, 1 << 18, &four);
+    assert_eq!((outcome.stopped_by, picture.summary.pixels_unseen), (StoppedBy::Interrupt, 0));
+    assert!(outcome.replicates < 4 && picture.summary.passes >= 2, "{:?}", picture.summary);
+    let mut scene = ball_on_table(grey(0.4), ROOM, true);
+    scene.camera.as_mut().unwrap().pixels = [36, 20];
+    let (sum, expected) = (total(&picture.film), total(&pictured(&scene, &four, false).1.film));
+    assert!((sum / expected - 1.0).abs() < 0.02, "{sum} {expected}");
+}
+
+#[test]
+fn a_replicate_that_an_interrupt_leaves_open_does_not_widen_the_error() {
+    // A replicate takes several passes; the interrupt comes in the middle of the fifth of eight.
+    let eight = plan(1 << 19, 8);
+    let (_, parts) = interrupted_after((4 << 16) + (1 << 15) + 1, 1 << 18, &eight);
+    assert!(parts.summary.passes > 2 * parts.summary.replicates, "{:?}", parts.summary);
+    assert!(parts.summary.photons > 4 << 16 && parts.summary.photons < 5 << 16, "{:?}", parts.summary);
+    let (_, whole) = pictured(&ball_on_table(grey(0.4), ROOM, true), &plan(4 << 16, 4), false);
+    let median = |film: &Film<1>| {
+        let mut parts: Vec<f64> = film
+            .value
+            .iter()
+            .zip(&film.standard_error)
+            .filter(|(v, _)| v[0] > 0.0)
+            .map(|(v, e)| e / v[0])
+            .collect();
+        parts.sort_by(f64::total_cmp);
+        parts[parts.len() / 2]
+    };
+    let ratio = median(&parts.film) / median(&whole.film);
+    println!("standard error of an interrupted run in passes over that of its whole replicates: {ratio}");
+    assert!((0.7..1.4).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn a_bandwidth_chosen_in_the_first_of_many_passes_is_near_that_of_one() {
+    let plan = plan(1 << 18, 8);
+    let chosen = |memory| {
+        let mut scene = ball_on_table(grey(0.4), memory, true);
+        scene.camera.as_mut().unwrap().bandwidth = Bandwidth::Automatic;
+        let (_, picture) = pictured(&scene, &plan, false);
+        (picture.summary.bandwidth.unwrap().map(|b| b.radius_m.unwrap()), picture.summary)
+    };
+    let (whole, one) = chosen(ROOM);
+    // Several replicates in the first pass, one, and parts of one.
+    for memory in [1 << 21, 1 << 20, 1 << 19, 1 << 18, 1 << 17] {
+        let (parts, many) = chosen(memory);
+        println!("{} passes: {parts:?} m, one: {whole:?} m", many.passes);
+        assert!(many.passes > one.passes);
+        let [caustic, diffuse] = [0, 1].map(|k| parts[k] / whole[k]);
+        // How sharp a caustic is few photons cannot tell: they blur it more.
+        assert!((0.7..7.0).contains(&caustic) && (0.5..2.0).contains(&diffuse), "{parts:?} {whole:?}");
+    }
 }
 
 fn total(film: &Film<1>) -> f64 {

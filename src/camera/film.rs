@@ -89,6 +89,9 @@ impl<const C: usize> PixelSums<C> {
         sparse_square: 0.0,
     };
 
+    /// A pixel that an interrupt left unseen: black, its error and bias unknown.
+    pub(super) const UNSEEN: Self = Self { further_bias: f64::NAN, sparse_square: f64::NAN, ..Self::NOTHING };
+
     /// A replicate's photons, or a part of them, make this luminance.
     pub(super) fn add_replicate(&mut self, luminance: f64, finished: bool) {
         self.open += luminance;
@@ -102,11 +105,16 @@ impl<const C: usize> PixelSums<C> {
     /// Square of the standard error of the luminance; NaN where a single replicate or a single sample says nothing.
     fn variance(&self, replicates: u32, sets: u32) -> f64 {
         let (r, s) = (f64::from(replicates), f64::from(sets));
-        // The value is the sum over replicates, the mean over sets.
+        // The value is the sum over replicates, the mean over sets. A replicate that an interrupt left open brings no more
+        // than the spread of a whole one.
+        let open = if self.open == 0.0 { 0.0 } else { 1.0 };
         let of_photons = match replicates {
-            0 => 0.0,
-            1 => f64::NAN,
-            _ => (r * self.photons_square - self.photons * self.photons).max(0.0) / (r - 1.0),
+            0 if self.open == 0.0 => 0.0,
+            0 | 1 => f64::NAN,
+            _ => {
+                let squares = (r * self.photons_square - self.photons * self.photons).max(0.0);
+                squares / (r - 1.0) * ((r + open) / r)
+            }
         };
         let of_eye = if sets < 2 {
             f64::NAN
@@ -232,6 +240,13 @@ mod tests {
         assert!((sums.variance(3, 4) - (3.0 + 1.0 / 6.0)).abs() < 1e-14);
         assert!(sums.variance(1, 4).is_nan() && sums.variance(3, 1).is_nan());
         assert_eq!(PixelSums::<1>::NOTHING.variance(0, 4), 0.0);
+        // A part of a fourth replicate is at most another.
+        let mut open = sums;
+        open.add_replicate(0.5, false);
+        assert!((open.variance(3, 4) - (4.0 + 1.0 / 6.0)).abs() < 1e-14);
+        let mut only_open = PixelSums::<1>::NOTHING;
+        only_open.add_replicate(0.5, false);
+        assert!(only_open.variance(0, 4).is_nan() && PixelSums::<1>::UNSEEN.variance(3, 4).is_nan());
         sums.sparse_square = 1.0;
         let before = sums.variance(3, 4);
         sums.scale(2.0);

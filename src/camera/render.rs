@@ -54,8 +54,8 @@ impl<'d, const C: usize> Pass<'d, C> {
 /// What a pass did beside its pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rendered {
-    /// False where the interrupt came before all pixels were done: the sums are then worth nothing.
-    pub complete: bool,
+    /// Pixels that an interrupt left unseen: black, of unknown error.
+    pub unseen: u64,
     /// Eye paths that were ended because they did not end by themselves.
     pub killed: u64,
 }
@@ -84,30 +84,34 @@ pub fn render<const C: usize>(
         ));
     }
     let pixels = view.spec.pixels;
-    let killed = AtomicU64::new(0);
+    let (killed, unseen) = (AtomicU64::new(0), AtomicU64::new(0));
     let sets = SETS.min(view.spec.samples);
     sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
         let mut brush = Brush::new(view, pass, sets);
         let corner = Sums::<C>::corner(pixels, tile);
-        let mut done = 0;
+        let (mut done, mut left) = (0, 0);
         for (k, sums) in sums.iter_mut().enumerate() {
-            if interrupt.load(Ordering::Relaxed) {
-                return;
-            }
             let [column, row] = [corner[0] + k as u32 % TILE, corner[1] + k as u32 / TILE];
-            if column < pixels[0] && row < pixels[1] {
+            if column >= pixels[0] || row >= pixels[1] {
+                continue;
+            }
+            if interrupt.load(Ordering::Relaxed) {
+                *sums = PixelSums::UNSEEN;
+                left += 1;
+            } else {
                 brush.paint([column, row], sums);
                 done += 1;
             }
         }
         killed.fetch_add(brush.path.killed, Ordering::Relaxed);
+        unseen.fetch_add(left, Ordering::Relaxed);
         progress(done);
     });
     if pass.finishes {
         sums.replicates += pass.replicates.len() as u32;
     }
     sums.sets = sets;
-    Ok(Rendered { complete: !interrupt.load(Ordering::Relaxed), killed: killed.into_inner() })
+    Ok(Rendered { unseen: unseen.into_inner(), killed: killed.into_inner() })
 }
 
 /// Renders pixels one after another.

@@ -7,7 +7,7 @@ use crate::image::atomic::write_atomically;
 use crate::report::camera::CameraReport;
 use crate::report::picture::{camera_attributes, write_camera};
 use crate::run::Plan;
-use crate::run::picture::{self, AnyPicture, Watch, hash_of_photons, picture_of_saved};
+use crate::run::picture::{self, AnyPicture, PictureSummary, Watch, hash_of_photons, picture_of_saved};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
 use crate::scene::source::read_capped;
@@ -90,12 +90,28 @@ pub(super) fn of_saved(saved: AnyMap, scene: &Scene, plan: &Plan, watch: Watch<'
 /// Writes the photons of a picture.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A file that cannot be written; photons that were too many for the camera's memory.
 pub(super) fn save(path: &Path, picture: &AnyPicture) -> Result<()> {
-    write_atomically(path, |out| match picture {
-        AnyPicture::Grey(picture) => picture.photons.as_ref().map_or(Ok(()), |map| map.to_writer(out)),
-        AnyPicture::Rgb(picture) => picture.photons.as_ref().map_or(Ok(()), |map| map.to_writer(out)),
-    })
+    match picture {
+        AnyPicture::Grey(picture) => save_map(path, &picture.summary, picture.photons.as_ref()),
+        AnyPicture::Rgb(picture) => save_map(path, &picture.summary, picture.photons.as_ref()),
+    }
+}
+
+fn save_map<const C: usize>(
+    path: &Path,
+    summary: &PictureSummary,
+    photons: Option<&SavedMap<C>>,
+) -> Result<()> {
+    match photons {
+        Some(map) => write_atomically(path, |out| map.to_writer(out)),
+        None => Err(Diagnostic::new(
+            Kind::Limit,
+            format!("--save-map and {} photons, in {} passes", summary.photons_kept, summary.passes),
+            "as many photons as the camera's memory holds at a time, to save them",
+        )
+        .hint("a larger photon_memory_mb, or fewer photons; all other results are written")),
+    }
 }
 
 /// Writes the camera's files into a directory that exists, and says what they are.

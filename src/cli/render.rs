@@ -65,7 +65,8 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
     say_rounding(asked, &plan);
     catch_interrupts();
     let (outcome, picture) = traced(args, &scene, &plan).map_err(one)?;
-    let directory = destination(&args.output, &outcome).map_err(one)?;
+    let unseen = picture.as_ref().map_or(0, |picture| picture.summary().pixels_unseen);
+    let directory = destination(&args.output, &outcome, unseen).map_err(one)?;
     let statistics: Vec<_> = scene
         .receivers
         .iter()
@@ -108,7 +109,20 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
         ));
         return Ok(exit::INTERRUPTED);
     }
-    Ok(exit::DONE)
+    Ok(seen_wholly(unseen, &directory))
+}
+
+/// The exit code of a picture of which an interrupt left so many pixels unseen.
+fn seen_wholly(unseen: u64, directory: &Path) -> u8 {
+    if unseen == 0 {
+        return exit::DONE;
+    }
+    say(&format!(
+        "caustix: interrupted with {} pixels of the picture to go, which are black; it was written to {}",
+        text::grouped(unseen),
+        directory.display()
+    ));
+    exit::INTERRUPTED
 }
 
 /// The command line where it speaks, else the scene's [run], else the defaults.
@@ -171,10 +185,12 @@ fn seen_again(
     let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
     let picture = pool.install(|| picture::of_saved(saved, scene, plan, watch)).map_err(one)?;
     let Some(spec) = &scene.camera else { return Ok(exit::DONE) };
-    let camera = picture::write(&args.output, scene, plan, spec, &picture).map_err(one)?;
+    let unseen = picture.summary().pixels_unseen;
+    let directory = beside_earlier(&args.output, unseen > 0, |_| true).map_err(one)?;
+    let camera = picture::write(&directory, scene, plan, spec, &picture).map_err(one)?;
     let total_s = started.elapsed().as_secs_f64();
     let report = SavedReport::new(scene, plan, map, camera, total_s);
-    write_report(&args.output.join("report.json"), &report).map_err(one)?;
+    write_report(&directory.join("report.json"), &report).map_err(one)?;
     if !args.quiet {
         print(&format!("scene      {}\n", scene.identity.name));
         print(&format!(
@@ -182,16 +198,20 @@ fn seen_again(
             map.display()
         ));
         print(&report.camera.text());
-        print(&format!("written to {}\n", args.output.display()));
+        print(&format!("written to {}\n", directory.display()));
     }
-    Ok(exit::DONE)
+    Ok(seen_wholly(unseen, &directory))
 }
 
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<(Outcome, Option<AnyPicture>)> {
     let pool = thread_pool(args.threads)?;
     let progress = Progress::new(args.quiet, plan.photons());
     progress.say("tracing");
-    let photons = |photons| progress.add(photons);
+    // The camera may have been at work before: photons are traced pass by pass.
+    let photons = |photons| {
+        progress.say("tracing");
+        progress.add(photons);
+    };
     let outcome = pool.install(|| {
         if scene.camera.is_none() {
             return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
@@ -227,17 +247,25 @@ pub(super) fn make_directory(path: &Path) -> Result<()> {
     })
 }
 
-/// Where the results go: the directory that was asked for, but for an interrupted run that would replace the results
-/// of a longer one there: its results go into `interrupted/` beside them.
-fn destination(output: &Path, outcome: &Outcome) -> Result<PathBuf> {
-    if outcome.stopped_by == StoppedBy::Photons {
+/// Where the results of a run go, of whose picture an interrupt left so many pixels unseen.
+fn destination(output: &Path, outcome: &Outcome, unseen: u64) -> Result<PathBuf> {
+    let interrupted = outcome.stopped_by == StoppedBy::Interrupt || unseen > 0;
+    beside_earlier(output, interrupted, |photons| {
+        photons > outcome.photons || (unseen > 0 && photons == outcome.photons)
+    })
+}
+
+/// The directory that was asked for, but for interrupted results that would replace those of `more` photons there: they go
+/// into `interrupted/` beside them.
+fn beside_earlier(output: &Path, interrupted: bool, more: impl Fn(u64) -> bool) -> Result<PathBuf> {
+    if !interrupted {
         return Ok(output.to_path_buf());
     }
     let earlier = std::fs::read_to_string(output.join("report.json"))
         .ok()
         .and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok())
         .and_then(|report| report.get("photons").and_then(serde_json::Value::as_u64));
-    if earlier.is_some_and(|photons| photons > outcome.photons) {
+    if earlier.is_some_and(more) {
         let beside = output.join("interrupted");
         make_directory(&beside)?;
         return Ok(beside);

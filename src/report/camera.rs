@@ -31,6 +31,12 @@ pub struct CameraReport {
     pub photons_kept: u64,
     /// Passes that the memory for photons made necessary.
     pub passes: u32,
+    /// Eye paths that were ended because they did not end by themselves.
+    pub eye_paths_killed: u64,
+    /// Splats of a photon that were cut to the largest that is added.
+    pub splats_cut: u64,
+    /// Pixels that an interrupt left unseen: black, with an unknown error.
+    pub pixels_unseen: u64,
     /// Time of maps and eye paths, s. (What a splat takes is part of the tracing.)
     pub time_s: f64,
     /// Files written.
@@ -59,6 +65,9 @@ impl CameraReport {
             photons: summary.photons,
             photons_kept: summary.photons_kept,
             passes: summary.passes,
+            eye_paths_killed: summary.eye_paths_killed,
+            splats_cut: summary.splats_cut,
+            pixels_unseen: summary.pixels_unseen,
             time_s: summary.time_s,
             files: files.to_vec(),
         }
@@ -103,6 +112,18 @@ impl CameraReport {
             percent(self.median_standard_error_percent),
             percent(self.median_bias_percent)
         )?;
+        for (number, what) in [
+            (self.pixels_unseen, "pixels not seen before the interrupt: black, their error unknown"),
+            (
+                self.eye_paths_killed,
+                "eye paths ended by the guard against endless ones: their light is missing",
+            ),
+            (self.splats_cut, "splats cut: the pinhole all but touches a surface"),
+        ] {
+            if number > 0 {
+                writeln!(out, "  missing      {} {what}", grouped(number))?;
+            }
+        }
         if !self.files.is_empty() {
             writeln!(out, "  files        {}", self.files.join(", "))?;
         }
@@ -139,9 +160,10 @@ mod tests {
             passes: 2,
             bandwidth: Some([chosen(0.0125, Some(81.25)), chosen(0.1, None)]),
             eye_paths_killed: 0,
+            splats_cut: 0,
+            pixels_unseen: 0,
             cost: Cost { median_bias_percent: Some(1.234), median_standard_error_percent: None },
             time_s: 12.345,
-            from_file: false,
         };
         let report = CameraReport::new(&spec, &summary, &["camera.exr".into(), "camera.png".into()]);
         for line in [
@@ -156,6 +178,16 @@ mod tests {
         let json = serde_json::to_value(&report).unwrap();
         assert_eq!(json["bandwidth"]["caustic"]["radius_m"], 0.0125);
         assert_eq!(json["bandwidth"]["diffuse"]["neighbours"], serde_json::Value::Null);
+        for number in ["eye_paths_killed", "splats_cut", "pixels_unseen"] {
+            assert_eq!(json[number], 0);
+        }
+        assert!(!report.text().contains("missing"), "{}", report.text());
+        (summary.eye_paths_killed, summary.pixels_unseen) = (12_345, 7);
+        let told = CameraReport::new(&spec, &summary, &[]).text();
+        assert!(
+            told.contains("missing      12 345 eye paths") && told.contains("7 pixels not seen"),
+            "{told}"
+        );
         (summary.method, summary.bandwidth) = (Method::Splat, None);
         let splat = CameraReport::new(&spec, &summary, &[]).text();
         assert!(

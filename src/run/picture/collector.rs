@@ -18,8 +18,8 @@ use crate::transport::parallel::Traced;
 
 use super::super::plan::Plan;
 use super::super::tracer::Tracer;
-use super::eye::{Bandwidths, Eye, Seen};
-use super::summary::{Cost, PictureSummary};
+use super::eye::{Eye, Seeing, Seen, Settled};
+use super::summary::{Chosen, Cost, PictureSummary};
 use super::{Picture, Watch};
 
 /// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
@@ -54,10 +54,11 @@ pub(super) struct Collector<'a, const C: usize> {
     replicates: u32,
     /// Photons of the run as planned.
     planned: u64,
-    bandwidths: Option<Bandwidths>,
+    bandwidths: [Option<Settled>; 2],
     passes: u32,
     /// Whether the last pass was of a part of a replicate that is to go on.
     open: bool,
+    /// Whether all photons are to be handed out; no longer once they are more than there is room for.
     keep: bool,
     camera_s: f64,
 }
@@ -90,7 +91,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             whole: true,
             replicates: 0,
             planned: plan.photons(),
-            bandwidths: None,
+            bandwidths: [None; 2],
             passes: 0,
             open: false,
             keep,
@@ -140,6 +141,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         if self.held_of.is_empty() {
             return Ok(());
         }
+        self.keep = false;
         self.pass(false).map(|_| ())
     }
 
@@ -156,9 +158,10 @@ impl<'a, const C: usize> Collector<'a, C> {
         end.min((from / length + 1) * length)
     }
 
-    /// Photons that so many traced ones are likely to leave; 0 while nothing is known.
+    /// Photons that so many traced ones are likely to leave; 0 while nothing is known, and where all are kept if they can be:
+    /// only that they cannot is a reason then.
     fn foretold(&self, photons: u64) -> usize {
-        if self.traced == 0 {
+        if self.traced == 0 || self.keep {
             return 0;
         }
         with_reserve(photons as f64 * (self.kept as f64 / self.traced as f64)) as usize
@@ -234,7 +237,18 @@ impl<'a, const C: usize> Collector<'a, C> {
     }
 
     /// Takes the photons of another run of the scene for its own.
-    pub(super) fn adopt(&mut self, saved: SavedMap<C>) {
+    ///
+    /// # Errors
+    /// More than the camera's memory holds.
+    pub(super) fn adopt(&mut self, saved: SavedMap<C>) -> Result<()> {
+        if saved.photons.len() > self.capacity {
+            return Err(Diagnostic::new(
+                Kind::Limit,
+                format!("{} saved photons", saved.photons.len()),
+                format!("at most {}, as the camera's memory holds", self.capacity),
+            )
+            .hint("a larger photon_memory_mb, as the run had that saved them"));
+        }
         self.planned = saved.photons_traced;
         self.replicates = saved.replicates;
         (self.held_of, self.whole) = (0..saved.replicates, true);
@@ -243,19 +257,12 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.held_photons = saved.photons.len();
         let (scattered, not): (Vec<_>, Vec<_>) = saved.photons.into_iter().partition(Photon::is_scattered);
         self.held = [vec![not], vec![scattered]];
+        Ok(())
     }
 
     /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that of the run as
     /// planned. Light that no photon brings is seen in the last pass.
     fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
-        if self.keep && !last {
-            return Err(Diagnostic::new(
-                Kind::Limit,
-                format!("more than {} photons to keep", self.capacity),
-                "as many photons as the camera's memory holds, to save them",
-            )
-            .hint("a larger photon_memory_mb, or fewer photons"));
-        }
         let started = Instant::now();
         let flux_lm = self.scene.emitters.flux_lm();
         let exact_lm = flux_lm / self.traced.max(1) as f64;
@@ -269,27 +276,12 @@ impl<'a, const C: usize> Collector<'a, C> {
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
         let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
         let part = part * photon_lm / exact_lm;
-        let frame = self.store.frame();
-        let mut maps = std::mem::take(&mut self.held).map(|blocks| {
-            let photons = joined(blocks);
-            let density = usize::from(photons.first().is_some_and(Photon::is_scattered));
-            let radius_m = self.eye.radius_to_sort_for_m(self.bandwidths.as_ref(), density);
-            PhotonMap::build(photons, frame, radius_m)
-        });
-        let bandwidths = match self.bandwidths {
-            Some(bandwidths) => bandwidths,
-            None => {
-                let chosen = self.eye.choose(&maps, part);
-                let [caustic, diffuse] = maps;
-                let radius_m = |density| self.eye.radius_to_sort_for_m(Some(&chosen), density);
-                maps = [caustic.rebuilt(radius_m(0)), diffuse.rebuilt(radius_m(1))];
-                *self.bandwidths.insert(chosen)
-            }
-        };
         let of = std::mem::replace(&mut self.held_of, 0..0);
-        // What an interrupt left of a replicate closes it.
-        let finishes = self.whole || last;
-        let of = if of.is_empty() && self.open { self.replicates - 1..self.replicates } else { of };
+        let [caustic, diffuse] = std::mem::take(&mut self.held);
+        let replicates = of.len() as u32;
+        let maps = [self.map_of(0, caustic, part, replicates), self.map_of(1, diffuse, part, replicates)];
+        // What an interrupt left of a replicate stays open: it is no whole one.
+        let (finishes, bandwidths) = (self.whole, self.bandwidths);
         let seen = Seen { maps: &maps, photon_lm, bandwidths, part, replicates: of, finishes, last };
         self.eye.add(&seen)?;
         self.open = !finishes;
@@ -297,6 +289,26 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.camera_s += started.elapsed().as_secs_f64();
         let [caustic, diffuse] = &maps;
         Ok(self.keep.then(|| [caustic.photons(), diffuse.photons()].concat()))
+    }
+
+    /// The map of photons, `part` of all and of so many replicates, sorted for the bandwidth of their density, which they settle
+    /// if nothing has.
+    fn map_of(
+        &mut self,
+        density: usize,
+        blocks: Vec<Vec<Photon<C>>>,
+        part: f64,
+        replicates: u32,
+    ) -> PhotonMap<C> {
+        let settled = self.bandwidths[density];
+        let radius_m = self.eye.radius_to_sort_for_m(settled.as_ref());
+        let map = PhotonMap::build(joined(blocks), self.store.frame(), radius_m);
+        if settled.is_some() {
+            return map;
+        }
+        self.bandwidths[density] = self.eye.choose(&map, part, replicates);
+        let wanted_m = self.eye.radius_to_sort_for_m(self.bandwidths[density].as_ref());
+        if wanted_m > 0.0 && wanted_m != radius_m { map.rebuilt(wanted_m) } else { map }
     }
 
     /// The picture of all that was accepted.
@@ -314,8 +326,8 @@ impl<'a, const C: usize> Collector<'a, C> {
             frame: self.store.frame(),
             photons,
         });
-        let chosen = self.bandwidths.map(|b| b.chosen());
-        let (film, killed) = self.eye.finish();
+        let chosen = self.bandwidths.map(|b| b.map_or(Chosen::default(), |settled| settled.chosen));
+        let Seeing { film, killed, unseen } = self.eye.finish();
         let cost = Cost::of(&film);
         let summary = PictureSummary {
             method: crate::scene::camera::Method::Map,
@@ -323,11 +335,12 @@ impl<'a, const C: usize> Collector<'a, C> {
             replicates: self.replicates,
             photons_kept: self.kept,
             passes: self.passes,
-            bandwidth: chosen,
+            bandwidth: Some(chosen),
             eye_paths_killed: killed,
+            splats_cut: 0,
+            pixels_unseen: unseen,
             cost,
             time_s: self.camera_s,
-            from_file: false,
         };
         Ok(Picture { film, summary, photons })
     }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::camera::{Film, Pass, Sums, View, render};
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::estimate::bandwidth;
 use crate::estimate::density::{Choice, Density};
 use crate::estimate::footprint::Footprints;
@@ -20,18 +20,15 @@ use super::super::plan::Plan;
 use super::Watch;
 use super::summary::Chosen;
 
-/// The bandwidths of both densities, chosen once.
+/// The bandwidth of a density, chosen once: from the first pass that has photons of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bandwidths {
-    of: [Bandwidth; 2],
-    chosen: [Chosen; 2],
+pub(super) struct Settled {
+    bandwidth: Bandwidth,
+    pub(super) chosen: Chosen,
 }
 
-impl Bandwidths {
-    pub(super) fn chosen(&self) -> [Chosen; 2] {
-        self.chosen
-    }
-}
+/// Fewest neighbours in a pass: of k nearest the relative variance is 1 / (k - 2).
+const FEWEST_IN_PASS: u32 = 16;
 
 /// What the camera sees in a pass.
 pub(super) struct Seen<'m, const C: usize> {
@@ -39,7 +36,8 @@ pub(super) struct Seen<'m, const C: usize> {
     pub(super) maps: &'m [PhotonMap<C>; 2],
     /// Flux of one of them, lm: that of the whole run.
     pub(super) photon_lm: f64,
-    pub(super) bandwidths: Bandwidths,
+    /// Of each of them; none where there are no photons.
+    pub(super) bandwidths: [Option<Settled>; 2],
     /// Which part of the run's photons this is.
     pub(super) part: f64,
     /// The replicates they are of: whole ones, or a part of one.
@@ -50,12 +48,22 @@ pub(super) struct Seen<'m, const C: usize> {
     pub(super) last: bool,
 }
 
-/// The camera at work. What was traced when an interrupt came is seen; one that comes while the camera looks ends it.
+/// What the camera saw in all.
+pub(super) struct Seeing<const C: usize> {
+    pub(super) film: Film<C>,
+    /// Eye paths that did not end by themselves.
+    pub(super) killed: u64,
+    /// Pixels that an interrupt left unseen.
+    pub(super) unseen: u64,
+}
+
+/// The camera at work.
 pub(super) struct Eye<'a, const C: usize> {
     view: View<'a>,
     spec: &'a CameraSpec,
     watch: Watch<'a>,
     killed: u64,
+    unseen: u64,
     footprints: Arc<Footprints<'a>>,
     sums: Sums<C>,
     replicates: u32,
@@ -72,41 +80,37 @@ impl<'a, const C: usize> Eye<'a, C> {
             spec,
             watch,
             killed: 0,
+            unseen: 0,
             footprints: Arc::new(Footprints::new(&scene.geometry)),
             sums: Sums::new(spec.pixels)?,
             replicates: plan.replicates,
         })
     }
 
-    /// Bandwidths from the photons of the first pass, `part` of all.
-    pub(super) fn choose(&self, maps: &[PhotonMap<C>; 2], part: f64) -> Bandwidths {
-        let mut of = [self.spec.bandwidth; 2];
-        let mut chosen = [Chosen { radius_m: None, neighbours: None }; 2];
-        for k in 0..2 {
-            match self.spec.bandwidth {
-                // Of no photons there is nothing to choose.
-                Bandwidth::Automatic if maps[k].photons().is_empty() => {}
-                Bandwidth::Automatic => {
-                    let kernel = self.spec.kernel;
-                    let found = bandwidth::choose(&self.footprints, &maps[k], kernel, self.replicates, part);
-                    of[k] = Bandwidth::AtLeast { radius_m: found.radius_m, neighbours: FEWEST_NEIGHBOURS };
-                    let neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
-                    chosen[k] = Chosen { radius_m: Some(found.radius_m), neighbours };
-                }
-                Bandwidth::Radius(radius_m)
-                | Bandwidth::Progressive(radius_m)
-                | Bandwidth::AtLeast { radius_m, .. } => {
-                    chosen[k].radius_m = Some(radius_m);
-                }
-                Bandwidth::Nearest(n) => chosen[k].neighbours = Some(f64::from(n)),
+    /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates; `None` where there
+    /// is nothing to choose from.
+    pub(super) fn choose(&self, map: &PhotonMap<C>, part: f64, replicates: u32) -> Option<Settled> {
+        let mut bandwidth = self.spec.bandwidth;
+        let mut chosen = Chosen { radius_m: None, neighbours: None };
+        match bandwidth {
+            Bandwidth::Automatic if map.photons().is_empty() => return None,
+            Bandwidth::Automatic => {
+                let found = bandwidth::choose(&self.footprints, map, self.spec.kernel, replicates, part);
+                bandwidth = Bandwidth::AtLeast { radius_m: found.radius_m, neighbours: FEWEST_NEIGHBOURS };
+                chosen.radius_m = Some(found.radius_m);
+                chosen.neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
             }
+            Bandwidth::Radius(radius_m)
+            | Bandwidth::Progressive(radius_m)
+            | Bandwidth::AtLeast { radius_m, .. } => chosen.radius_m = Some(radius_m),
+            Bandwidth::Nearest(n) => chosen.neighbours = Some(f64::from(n)),
         }
-        Bandwidths { of, chosen }
+        Some(Settled { bandwidth, chosen })
     }
 
-    /// A map of photons, sorted for the bandwidth if that is known: `density` 0 or 1.
-    pub(super) fn radius_to_sort_for_m(&self, chosen: Option<&Bandwidths>, density: usize) -> f64 {
-        match chosen.map_or(self.spec.bandwidth, |b| b.of[density]) {
+    /// The radius that a map of photons is sorted for, m: that of the bandwidth if it is known.
+    pub(super) fn radius_to_sort_for_m(&self, settled: Option<&Settled>) -> f64 {
+        match settled.map_or(self.spec.bandwidth, |s| s.bandwidth) {
             Bandwidth::Radius(radius_m)
             | Bandwidth::Progressive(radius_m)
             | Bandwidth::AtLeast { radius_m, .. } => radius_m,
@@ -117,10 +121,10 @@ impl<'a, const C: usize> Eye<'a, C> {
 
     /// Adds what is seen in a pass.
     pub(super) fn add(&mut self, seen: &Seen<'_, C>) -> Result<()> {
-        // The neighbours of a pass are a part of those of the run; two are the fewest that have a density.
-        let of_pass = |n: u32| ((f64::from(n) * seen.part + 0.5) as u32).max(2);
-        let density = |k: usize| {
-            let bandwidth = match seen.bandwidths.of[k] {
+        // The neighbours of a pass are a part of those of the run.
+        let of_pass = |n: u32| ((f64::from(n) * seen.part + 0.5) as u32).max(FEWEST_IN_PASS.min(n));
+        let density = |k: usize, settled: Settled| {
+            let bandwidth = match settled.bandwidth {
                 Bandwidth::Nearest(n) => Bandwidth::Nearest(of_pass(n)),
                 Bandwidth::AtLeast { radius_m, neighbours } => {
                     Bandwidth::AtLeast { radius_m, neighbours: of_pass(neighbours) }
@@ -130,8 +134,9 @@ impl<'a, const C: usize> Eye<'a, C> {
             let choice = Choice { bandwidth, kernel: self.spec.kernel, replicates: self.replicates };
             Density::on(Arc::clone(&self.footprints), &seen.maps[k], seen.photon_lm, choice)
         };
-        let with_photons = |k: &usize| !seen.maps[*k].photons().is_empty();
-        let densities: Vec<Density<'_, C>> = (0..2).filter(with_photons).map(density).collect();
+        let with_photons = (0..2).filter(|k| !seen.maps[*k].photons().is_empty());
+        let densities: Vec<Density<'_, C>> =
+            with_photons.filter_map(|k| Some(density(k, seen.bandwidths[k]?))).collect();
         let pass = Pass {
             densities: &densities,
             replicates: seen.replicates.clone(),
@@ -139,12 +144,12 @@ impl<'a, const C: usize> Eye<'a, C> {
             emission: seen.last,
             direct: seen.last,
         };
-        self.look(&pass)
+        self.look(&pass, seen.last)
     }
 
     /// Adds emitters and background as seen directly, by mirrors and through glass, without light on surfaces.
     pub(super) fn add_emitters(&mut self) -> Result<()> {
-        self.look(&Pass::emission())
+        self.look(&Pass::emission(), true)
     }
 
     /// Takes all photons so far for this many times their flux.
@@ -152,7 +157,9 @@ impl<'a, const C: usize> Eye<'a, C> {
         self.sums.scale(factor);
     }
 
-    fn look(&mut self, pass: &Pass<'_, C>) -> Result<()> {
+    /// An interrupt while photons are still to come ends their tracing, not the look at those that are there: it is the last
+    /// look that it ends, unless tracing had been ended by it already.
+    fn look(&mut self, pass: &Pass<'_, C>, last: bool) -> Result<()> {
         let [columns, rows] = self.sums.pixels().map(u64::from);
         let done = AtomicU64::new(0);
         let tell = |pixels: u64| {
@@ -161,18 +168,16 @@ impl<'a, const C: usize> Eye<'a, C> {
         };
         let never = AtomicBool::new(false);
         let was_interrupted = self.watch.interrupt.load(Ordering::Relaxed);
-        let interrupt = if was_interrupted { &never } else { self.watch.interrupt };
+        let interrupt = if was_interrupted || !last { &never } else { self.watch.interrupt };
         let rendered = render(&self.view, pass, &mut self.sums, interrupt, &tell)?;
-        self.killed += rendered.killed;
-        if rendered.complete {
-            return Ok(());
-        }
-        let required = "all pixels: a part of them is no picture";
-        Err(Diagnostic::new(Kind::Interrupted, "an interrupt before the picture was finished", required))
+        // The eye's paths are the same in every pass.
+        self.killed = rendered.killed;
+        self.unseen = rendered.unseen;
+        Ok(())
     }
 
-    /// The film, and the number of eye paths that did not end by themselves.
-    pub(super) fn finish(self) -> (Film<C>, u64) {
-        (self.sums.finish(), self.killed)
+    /// The film, and what is to be said of it.
+    pub(super) fn finish(self) -> Seeing<C> {
+        Seeing { film: self.sums.finish(), killed: self.killed, unseen: self.unseen }
     }
 }

@@ -201,9 +201,8 @@ pub fn picture_of_saved<const C: usize>(
     }
     let started = Instant::now();
     let mut collector = Collector::new(scene, spec, plan, false, watch)?;
-    collector.adopt(saved);
+    collector.adopt(saved)?;
     let mut picture = collector.finish()?;
-    picture.summary.from_file = true;
     picture.summary.time_s = started.elapsed().as_secs_f64();
     Ok(picture)
 }

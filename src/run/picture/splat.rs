@@ -11,7 +11,7 @@ use crate::scene::camera::{CameraSpec, Method};
 use crate::tally::photon_map::Channels;
 
 use super::super::{Outcome, Plan, trace_by};
-use super::eye::Eye;
+use super::eye::{Eye, Seeing};
 use super::summary::{Cost, PictureSummary};
 use super::{Picture, Watch};
 
@@ -47,7 +47,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     )?;
     let started = Instant::now();
     eye.add_emitters()?;
-    let (film, killed) = eye.finish();
+    let Seeing { film, killed, unseen } = eye.finish();
     let film = with_splats(film, &moments, &outcome);
     let cost = Cost::of(&film);
     let summary = PictureSummary {
@@ -58,9 +58,10 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
         passes: 1,
         bandwidth: None,
         eye_paths_killed: killed,
+        splats_cut: splat.cut(),
+        pixels_unseen: unseen,
         cost,
         time_s: started.elapsed().as_secs_f64(),
-        from_file: false,
     };
     Ok((outcome, Picture { film, summary, photons: None }))
 }

@@ -41,12 +41,14 @@ pub struct PictureSummary {
     pub bandwidth: Option<[Chosen; 2]>,
     /// Eye paths that were ended because they did not end by themselves.
     pub eye_paths_killed: u64,
+    /// Splats of a photon that were cut to the largest that is added: the pinhole all but touches a surface.
+    pub splats_cut: u64,
+    /// Pixels that an interrupt left unseen: black, with an unknown error.
+    pub pixels_unseen: u64,
     /// How good it is.
     pub cost: Cost,
     /// Time of the maps and the camera, s.
     pub time_s: f64,
-    /// Whether the photons came from a file.
-    pub from_file: bool,
 }
 
 impl Cost {
