@@ -163,7 +163,7 @@ fn too_large_a_picture_is_refused_with_what_it_takes() {
         }
     }
     assert_eq!(Film::<1>::memory_bytes([8192, 8192]), 96 << 26);
-    assert_eq!(Film::<3>::memory_bytes([8192, 8192]), 128 << 26);
+    assert_eq!(Film::<3>::memory_bytes([8192, 8192]), 144 << 26);
 }
 
 const SCENE: &str = r#"

@@ -1,5 +1,6 @@
 //! Pixels: luminance, standard error, bias; and the sums that they come from.
 
+use crate::bsdf::luminance_of;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::estimate::density::BIAS_PER_DIFFERENCE;
 
@@ -71,8 +72,8 @@ pub(super) struct PixelSums<const C: usize> {
     /// Of the luminance that each finished replicate's photons make: sum, and sum of squares.
     pub photons: f64,
     pub photons_square: f64,
-    /// Luminance from the photons of the replicate that is not finished.
-    pub open: f64,
+    /// What the photons of the replicate that is not finished make, by channel.
+    pub open: [f64; C],
     /// Square of the standard error owed to places with hardly a photon, whose spread says nothing.
     pub sparse_square: f64,
 }
@@ -85,36 +86,34 @@ impl<const C: usize> PixelSums<C> {
         by_set: [0.0; SETS as usize],
         photons: 0.0,
         photons_square: 0.0,
-        open: 0.0,
+        open: [0.0; C],
         sparse_square: 0.0,
     };
 
     /// A pixel that an interrupt left unseen: black, its error and bias unknown.
     pub(super) const UNSEEN: Self = Self { further_bias: f64::NAN, sparse_square: f64::NAN, ..Self::NOTHING };
 
-    /// A replicate's photons, or a part of them, make this luminance.
-    pub(super) fn add_replicate(&mut self, luminance: f64, finished: bool) {
-        self.open += luminance;
-        if finished {
-            self.photons += self.open;
-            self.photons_square += self.open * self.open;
-            self.open = 0.0;
-        }
+    /// A part of a replicate's photons makes this, by channel.
+    pub(super) fn add_part(&mut self, part: [f64; C]) {
+        (0..C).for_each(|c| self.open[c] += part[c]);
+    }
+
+    /// A replicate's photons, or the last part of them, make this luminance.
+    pub(super) fn add_replicate(&mut self, luminance: f64) {
+        let all = luminance_of(&self.open) + luminance;
+        self.photons += all;
+        self.photons_square += all * all;
+        self.open = [0.0; C];
     }
 
     /// Square of the standard error of the luminance; NaN where a single replicate or a single sample says nothing.
     fn variance(&self, replicates: u32, sets: u32) -> f64 {
         let (r, s) = (f64::from(replicates), f64::from(sets));
-        // The value is the sum over replicates, the mean over sets. A replicate that an interrupt left open brings no more
-        // than the spread of a whole one.
-        let open = if self.open == 0.0 { 0.0 } else { 1.0 };
+        // The value is the sum over replicates, the mean over sets.
         let of_photons = match replicates {
-            0 if self.open == 0.0 => 0.0,
+            0 if self.open == [0.0; C] => 0.0,
             0 | 1 => f64::NAN,
-            _ => {
-                let squares = (r * self.photons_square - self.photons * self.photons).max(0.0);
-                squares / (r - 1.0) * ((r + open) / r)
-            }
+            _ => (r * self.photons_square - self.photons * self.photons).max(0.0) / (r - 1.0),
         };
         let of_eye = if sets < 2 {
             f64::NAN
@@ -129,7 +128,8 @@ impl<const C: usize> PixelSums<C> {
     fn scale(&mut self, factor: f64) {
         self.value = self.value.map(|v| v * factor);
         self.by_set = self.by_set.map(|v| (f64::from(v) * factor) as f32);
-        for sum in [&mut self.difference, &mut self.further_bias, &mut self.photons, &mut self.open] {
+        self.open = self.open.map(|v| v * factor);
+        for sum in [&mut self.difference, &mut self.further_bias, &mut self.photons] {
             *sum *= factor;
         }
         for square in [&mut self.photons_square, &mut self.sparse_square] {
@@ -175,6 +175,15 @@ impl<const C: usize> Sums<C> {
     /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it was to have.
     pub fn scale(&mut self, factor: f64) {
         self.tiles.iter_mut().for_each(|sums| sums.scale(factor));
+    }
+
+    /// Takes back what the parts of a replicate that is not finished made of the picture: they are of a part of the emitters'
+    /// directions, not a sample of them.
+    pub fn drop_unfinished(&mut self) {
+        for sums in &mut self.tiles {
+            let open = std::mem::replace(&mut sums.open, [0.0; C]);
+            (0..C).for_each(|c| sums.value[c] -= open[c]);
+        }
     }
 
     /// Column and row of the first pixel of a tile.
@@ -232,20 +241,17 @@ mod tests {
     #[test]
     fn the_error_is_that_of_replicates_and_of_sets() {
         let mut sums = PixelSums::<1>::NOTHING;
-        for (part, finished) in [(1.0, false), (2.0, true), (5.0, true), (4.0, true)] {
-            sums.add_replicate(part, finished);
+        sums.add_part([1.0]);
+        for rest in [2.0, 5.0, 4.0] {
+            sums.add_replicate(rest);
         }
         sums.by_set = [11.0, 12.0, 13.0, 12.0];
         // Sum of three with variance 1: 3. Mean of four with variance 2/3: 1/6.
         assert!((sums.variance(3, 4) - (3.0 + 1.0 / 6.0)).abs() < 1e-14);
         assert!(sums.variance(1, 4).is_nan() && sums.variance(3, 1).is_nan());
         assert_eq!(PixelSums::<1>::NOTHING.variance(0, 4), 0.0);
-        // A part of a fourth replicate is at most another.
-        let mut open = sums;
-        open.add_replicate(0.5, false);
-        assert!((open.variance(3, 4) - (4.0 + 1.0 / 6.0)).abs() < 1e-14);
         let mut only_open = PixelSums::<1>::NOTHING;
-        only_open.add_replicate(0.5, false);
+        only_open.add_part([0.5]);
         assert!(only_open.variance(0, 4).is_nan() && PixelSums::<1>::UNSEEN.variance(3, 4).is_nan());
         sums.sparse_square = 1.0;
         let before = sums.variance(3, 4);

@@ -155,9 +155,12 @@ impl<'a, const C: usize> Brush<'a, C> {
         sums.difference += (luminance_of(&gathered.second) - luminance_of(&gathered.value)) * of_sample;
         sums.further_bias += gathered.nearest_bias * of_sample;
         sums.sparse_square += (gathered.sparse * of_sample).powi(2);
+        if !self.pass.finishes {
+            sums.add_part(gathered.value.map(|v| v * of_sample));
+            return;
+        }
         for replicate in self.pass.replicates.clone() {
-            let luminance = self.path.gathered.by_replicate[replicate as usize] * of_sample;
-            sums.add_replicate(luminance, self.pass.finishes);
+            sums.add_replicate(gathered.by_replicate[replicate as usize] * of_sample);
         }
     }
 

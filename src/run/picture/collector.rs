@@ -264,6 +264,9 @@ impl<'a, const C: usize> Collector<'a, C> {
     /// planned. Light that no photon brings is seen in the last pass.
     fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
         let started = Instant::now();
+        if last {
+            self.drop_unfinished();
+        }
         let flux_lm = self.scene.emitters.flux_lm();
         let exact_lm = flux_lm / self.traced.max(1) as f64;
         let planned_lm = flux_lm / self.planned.max(1) as f64;
@@ -280,7 +283,6 @@ impl<'a, const C: usize> Collector<'a, C> {
         let [caustic, diffuse] = std::mem::take(&mut self.held);
         let replicates = of.len() as u32;
         let maps = [self.map_of(0, caustic, part, replicates), self.map_of(1, diffuse, part, replicates)];
-        // What an interrupt left of a replicate stays open: it is no whole one.
         let (finishes, bandwidths) = (self.whole, self.bandwidths);
         let seen = Seen { maps: &maps, photon_lm, bandwidths, part, replicates: of, finishes, last };
         self.eye.add(&seen)?;
@@ -289,6 +291,20 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.camera_s += started.elapsed().as_secs_f64();
         let [caustic, diffuse] = &maps;
         Ok(self.keep.then(|| [caustic.photons(), diffuse.photons()].concat()))
+    }
+
+    /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions, not a sample of
+    /// them. Of the first replicate, without which there is nothing, what is finished stays.
+    fn drop_unfinished(&mut self) {
+        if self.whole || self.replicates < 2 {
+            return;
+        }
+        self.eye.drop_unfinished();
+        self.held = Kept::default();
+        (self.held_photons, self.held_of) = (0, 0..0);
+        self.replicates -= 1;
+        self.traced = u64::from(self.replicates) * self.plan.photons_per_replicate;
+        (self.whole, self.open) = (true, false);
     }
 
     /// The map of photons, `part` of all and of so many replicates, sorted for the bandwidth of their density, which they settle

@@ -157,6 +157,11 @@ impl<'a, const C: usize> Eye<'a, C> {
         self.sums.scale(factor);
     }
 
+    /// Takes back what is seen of a replicate that is not finished.
+    pub(super) fn drop_unfinished(&mut self) {
+        self.sums.drop_unfinished();
+    }
+
     /// An interrupt while photons are still to come ends their tracing, not the look at those that are there: it is the last
     /// look that it ends, unless tracing had been ended by it already.
     fn look(&mut self, pass: &Pass<'_, C>, last: bool) -> Result<()> {
