@@ -158,6 +158,49 @@ fn saved_photons_give_the_bytes_of_the_fresh_picture_and_one_of_another_view() {
     }
 }
 
+#[test]
+fn a_background_in_colour_or_not_is_the_camera_s_affair_alone() {
+    let folder = Folder::new();
+    let (grey, blue) = ("background = [0.5, 0.5, 0.5]", "background = [0.2, 0.5, 0.9]");
+    for (from, to) in [(grey, blue), (blue, grey)] {
+        folder.scene("from.toml", &ball(GREY, from));
+        folder.scene("to.toml", &ball(GREY, to));
+        let (one, _, _) = folder.picture("from.toml --save-map photons.map", "from");
+        let (saved_exr, saved_png, _) = folder.picture("to.toml --map photons.map", "saved");
+        let (fresh_exr, fresh_png, _) = folder.picture("to.toml", "fresh");
+        assert!(saved_exr == fresh_exr && saved_png == fresh_png && one != fresh_exr, "{from} {to}");
+    }
+}
+
+#[test]
+fn photons_too_many_to_save_cost_only_their_file() {
+    let folder = Folder::new();
+    folder.scene("scene.toml", &ball(GREY, "photon_memory_mb = 1"));
+    let (_, _, report) = folder.picture("scene.toml", "without");
+    assert!(report["camera"]["passes"].as_u64().unwrap() > 1);
+    let (code, said) = folder.render("scene.toml --save-map photons.map -o with --quiet");
+    assert!(code == 1 && said.contains("--save-map") && said.contains("photon_memory_mb"), "{code} {said}");
+    assert!(!folder.path("photons.map").exists());
+    for name in ["camera.exr", "camera.png", "report.json", "table.exr"] {
+        assert!(folder.path("with").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn check_refuses_the_cameras_that_render_refuses() {
+    let folder = Folder::new();
+    let on_the_ball = ball(GREY, "").replace("[0.3, -1.2, 0.8]", "[0.0, 0.0, 0.45]");
+    let too_large = ball(GREY, "method = \"splat\"").replace("[24, 18]", "[2900, 3600]");
+    for (text, part) in [(on_the_ball, "the camera on surface"), (too_large, "which takes")] {
+        folder.scene("scene.toml", &text);
+        folder.refused("scene.toml", &[part]);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
+        let checked = command.args(["check", "scene.toml"]).current_dir(folder.0.path()).output().unwrap();
+        let said = String::from_utf8(checked.stderr).unwrap();
+        assert!(checked.status.code() == Some(1) && said.contains(part), "{said}");
+    }
+}
+
 /// The report of a picture of saved photons against that of the run that saved them.
 fn assert_says_what_was_read(fresh: &Value, saved: &Value) {
     for key in ["caustix", "variant", "sequence", "solver", "seed", "photons", "replicates", "warnings"] {
@@ -206,6 +249,13 @@ fn damaged_maps_and_those_of_another_run_are_refused_by_name_and_reason() {
     ] {
         folder.refused(&format!("scene.toml --map {name}"), &["error", name, reason]);
     }
+    folder.refused(
+        "scene.toml --map photons.map --seed 9",
+        &["traced by qmc-inverse-reuse", "seed 1", "same settings"],
+    );
+    // More than this camera has memory for.
+    folder.scene("small.toml", &ball(GREY, "photon_memory_mb = 1"));
+    folder.refused("small.toml --map photons.map", &["saved photons", "photon_memory_mb"]);
     // Whole, but of other photons: another seed, another number, another sequence, another scene.
     for options in ["--seed 9", "--sequence independent", "--variant mc"] {
         folder.refused(

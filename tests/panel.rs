@@ -155,9 +155,13 @@ fn a_panel_on_or_across_a_closed_surface_is_refused() {
     );
     assert!(refused(&(panel.clone() + &sphere([1.0, 0.5, 1.0], 0.3))).contains("partly inside"));
     assert!(refused(&(panel.clone() + &sphere([0.5, 0.25, 1.1], 0.15))).contains("cut by"));
+    // Its end on an open surface, far from its centre.
+    let shelf = plate(1.2, 0.0, 0.5, 2).replace("0.0]\nedge_u", "1.0]\nedge_u");
+    assert!(refused(&(panel.clone() + &shelf)).contains("on surface"));
     // Inside, outside, and an open surface that crosses it are fine.
+    // (It meets the panel in a line of the points that are looked at.)
     for fine in [sphere([0.0, 0.0, 1.0], 1.5), sphere([0.0, 0.0, 0.0], 0.9), {
-        plate(0.0, 0.0, 1.0, 2).replace("edge_v = [0.0, 2.0, 0.0]", "edge_v = [0.0, 0.0, 3.0]")
+        plate(0.0, 1.09375, 1.0, 2).replace("edge_v = [0.0, 2.0, 0.0]", "edge_v = [0.0, 0.0, 3.0]")
     }] {
         scene(&(panel.clone() + &fine));
     }

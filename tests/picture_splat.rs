@@ -190,6 +190,37 @@ fn nothing_is_seen_through_glass_or_from_the_other_side() {
 }
 
 #[test]
+fn a_pixel_without_a_splat_has_the_error_of_one_photon() {
+    // The light covers the middle of what is seen.
+    let plate = rectangle("plate", DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
+    let spec = CameraSpec {
+        method: Method::Splat,
+        filter: Filter::Box,
+        ..CameraSpec::pinhole(DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y, 60.0, [12, 8])
+    };
+    let light = beam(DVec3::Z * 1.5, DVec3::NEG_Z, 0.3, 640.0);
+    let lit = scene(vec![(plate, grey(0.6))], vec![light], Some(spec));
+    let (_, picture) =
+        trace_picture(&lit, &plan(1 << 14, 4), false, unwatched(&AtomicBool::new(false))).unwrap();
+    let picture::AnyPicture::Grey(picture) = picture else { panic!("grey") };
+    // Looking straight at a plane, cos / d^2 and the picture's area per solid angle multiply to (focal length / distance)^2.
+    let focal_px = 6.0 / 30f64.to_radians().tan();
+    let one = 640.0 / f64::from(1 << 14) * 0.6 / PI * (focal_px / 2.0).powi(2);
+    let dark: Vec<f64> = picture
+        .film
+        .value
+        .iter()
+        .zip(&picture.film.standard_error)
+        .filter(|(v, _)| v[0] == 0.0)
+        .map(|(_, e)| *e)
+        .collect();
+    assert!(dark.len() > 40 && dark.len() < 96, "{}", dark.len());
+    for error in dark {
+        assert!((error / one - 1.0).abs() < 1e-12, "{error} {one}");
+    }
+}
+
+#[test]
 fn the_same_bits_on_any_number_of_threads_and_refusals() {
     let plate = rectangle("plate", DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
     let spec = CameraSpec {

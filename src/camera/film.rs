@@ -35,19 +35,26 @@ impl<const C: usize> Film<C> {
     /// # Errors
     /// One without pixels; one that takes more than [`MOST_PICTURE_BYTES`].
     pub fn check_memory(pixels: [u32; 2]) -> Result<()> {
-        let bytes = Self::memory_bytes(pixels);
-        if bytes <= MOST_PICTURE_BYTES && bytes > 0 {
-            return Ok(());
-        }
-        let [columns, rows] = pixels;
-        let mib = |bytes: u64| bytes.div_ceil(1 << 20);
-        Err(Diagnostic::new(
-            Kind::Limit,
-            format!("a picture of {columns} x {rows} pixels, which takes {} MiB", mib(bytes)),
-            format!("at least one pixel, and at most {} MiB", mib(MOST_PICTURE_BYTES)),
-        )
-        .hint("fewer pixels; several cameras of a part of the view each make a larger picture"))
+        check_memory(pixels, Self::memory_bytes(pixels))
     }
+}
+
+/// Whether a picture of so many columns and rows can be made that takes so many bytes.
+///
+/// # Errors
+/// One without pixels; one that takes more than [`MOST_PICTURE_BYTES`].
+pub(super) fn check_memory(pixels: [u32; 2], bytes: u64) -> Result<()> {
+    if bytes <= MOST_PICTURE_BYTES && bytes > 0 {
+        return Ok(());
+    }
+    let [columns, rows] = pixels;
+    let mib = |bytes: u64| bytes.div_ceil(1 << 20);
+    Err(Diagnostic::new(
+        Kind::Limit,
+        format!("a picture of {columns} x {rows} pixels, which takes {} MiB", mib(bytes)),
+        format!("at least one pixel, and at most {} MiB", mib(MOST_PICTURE_BYTES)),
+    )
+    .hint("fewer pixels; several cameras of a part of the view each make a larger picture"))
 }
 
 /// Columns and rows of a tile: what one task renders.

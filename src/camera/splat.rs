@@ -13,25 +13,25 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::bsdf::value::Leg;
 use crate::bsdf::{Bsdf, luminance, luminance_of};
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
+use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Filter};
 
+use super::film::{self, Film};
 use super::filter;
 use super::pinhole::Pinhole;
+use super::view::View;
 use crate::tally::ReceiverSink;
 use crate::tally::photon_map::Channels;
 use crate::tally::photon_map::sink::scattering_surfaces;
 use crate::tally::wide_sum::WideSum;
 use crate::transport::{Arrival, Sink};
-
-/// Most bytes of a splatted picture's sums.
-pub const MOST_SPLAT_BYTES: u64 = 1 << 30;
 
 /// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is large.
 const FRACTION_BITS: i32 = 48;
@@ -78,20 +78,29 @@ impl<const C: usize> SplatMoments<C> {
 }
 
 impl<'s, const C: usize> Splat<'s, C> {
+    /// Bytes that a picture of so many columns and rows takes while it is splatted: [`Film`] and these sums.
+    pub fn memory_bytes(pixels: [u32; 2]) -> u64 {
+        let of_pixel = size_of::<[WideSum; C]>() + size_of::<[f64; C]>() + size_of::<f64>();
+        let number = u128::from(pixels[0]) * u128::from(pixels[1]);
+        let sums = u64::try_from(number * of_pixel as u128).unwrap_or(u64::MAX);
+        Film::<C>::memory_bytes(pixels).saturating_add(sums)
+    }
+
+    /// Whether a picture of so many columns and rows can be splatted.
+    ///
+    /// # Errors
+    /// One without pixels; one that takes more than [`film::MOST_PICTURE_BYTES`].
+    pub fn check_memory(pixels: [u32; 2]) -> Result<()> {
+        film::check_memory(pixels, Self::memory_bytes(pixels))
+    }
+
     /// Sums at zero for a camera.
     ///
     /// # Errors
-    /// A picture whose sums need more than [`MOST_SPLAT_BYTES`].
+    /// Those of [`Self::check_memory`].
     pub fn new(scene: &'s Scene, spec: &CameraSpec) -> Result<Self> {
+        Self::check_memory(spec.pixels)?;
         let pixels = u64::from(spec.pixels[0]) * u64::from(spec.pixels[1]);
-        let bytes = pixels * (size_of::<[WideSum; C]>() + size_of::<[f64; C]>() + size_of::<f64>()) as u64;
-        if bytes > MOST_SPLAT_BYTES {
-            return Err(Diagnostic::new(
-                Kind::Limit,
-                format!("{} x {} pixels: {} MiB", spec.pixels[0], spec.pixels[1], bytes >> 20),
-                format!("a splatted picture of at most {} MiB", MOST_SPLAT_BYTES >> 20),
-            ));
-        }
         let pinhole = Pinhole::new(spec)?;
         // A power of two near the scene's size, so that a scene and the same scene times a power of two agree bit for bit.
         let (low, high) = scene.geometry.bounds();
@@ -197,6 +206,34 @@ impl<'s, const C: usize> Splat<'s, C> {
         whereabouts.leave(hit, if along > 0.0 { Side::Front } else { Side::Back });
         self.scene.geometry.occluded(hit.position, wo, distance, &whereabouts)
     }
+}
+
+/// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it, whose spread says
+/// nothing: that of (photons + 1), in units of the photon that [`of_one_lumen`] has in mind. 0 where there are enough.
+pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64) -> f64 {
+    let one = photon_lm * of_one_lumen(view, pixel);
+    let photons = luminance_cd_m2 / one;
+    // No number where a pixel sees nothing that photons could be joined from.
+    if photons < FEWEST_HITS as f64 { one * (photons + 1.0).sqrt() } else { 0.0 }
+}
+
+/// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where the pixel's middle looks; 0 if
+/// nothing is there.
+fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
+    let columns = view.spec.pixels[0] as usize;
+    let place = DVec2::new((pixel % columns) as f64 + 0.5, (pixel / columns) as f64 + 0.5);
+    let ray = view.pinhole.ray(place);
+    let Some(hit) = view.scene.geometry.nearest(ray.origin, ray.direction, &view.start, &mut 0) else {
+        return 0.0;
+    };
+    let Some(seen) = view.pinhole.project(hit.position) else { return 0.0 };
+    let to_eye = -seen.direction;
+    let towards = if to_eye.dot(hit.normal) > 0.0 { hit.normal } else { -hit.normal };
+    let bsdf = view.scene.bsdf(hit.surface);
+    let f = bsdf.value_between(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
+    let h = filter::density(view.spec.filter, [0.0; 2]);
+    let per_area = to_eye.dot(hit.normal).abs() / (seen.distance_m * seen.distance_m);
+    luminance(f) * per_area * seen.pixels_per_sr * h
 }
 
 /// f(wi, wo) by channel, 1/sr; one channel sees white light's luminance.

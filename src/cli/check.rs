@@ -3,10 +3,11 @@
 use serde::Serialize;
 
 use crate::camera::Film;
+use crate::camera::splat::Splat;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
 use crate::run::picture;
-use crate::scene::camera::Method;
+use crate::scene::camera::{CameraSpec, Method};
 use crate::scene::{Scene, requires::requirements};
 
 use super::{CheckArgs, exit, fail, print, render, warn};
@@ -178,10 +179,16 @@ impl Check {
 
 /// What a camera's picture takes while it is made.
 fn picture_bytes(scene: &Scene) -> u64 {
+    fn of<const C: usize>(camera: &CameraSpec) -> u64 {
+        match camera.method {
+            Method::Map => Film::<C>::memory_bytes(camera.pixels),
+            Method::Splat => Splat::<C>::memory_bytes(camera.pixels),
+        }
+    }
     match &scene.camera {
         None => 0,
-        Some(camera) if scene.is_coloured() => Film::<3>::memory_bytes(camera.pixels),
-        Some(camera) => Film::<1>::memory_bytes(camera.pixels),
+        Some(camera) if scene.is_coloured() => of::<3>(camera),
+        Some(camera) => of::<1>(camera),
     }
 }
 

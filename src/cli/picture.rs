@@ -7,7 +7,9 @@ use crate::image::atomic::write_atomically;
 use crate::report::camera::CameraReport;
 use crate::report::picture::{camera_attributes, write_camera};
 use crate::run::Plan;
-use crate::run::picture::{self, AnyPicture, PictureSummary, Watch, hash_of_photons, picture_of_saved};
+use crate::run::picture::{
+    self, AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved,
+};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
 use crate::scene::source::read_capped;
@@ -68,12 +70,26 @@ pub(super) fn read(path: &Path, scene: &Scene, plan: &Plan) -> Result<AnyMap> {
     let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
     let hash = hash_of_photons(scene, plan);
     let in_file = |e: Diagnostic| e.in_file(path);
-    // A file of the other number of channels is of another scene: its hash says so.
-    Ok(if channels(&bytes).map_err(in_file)? == 3 {
-        AnyMap::Rgb(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?)
-    } else {
-        AnyMap::Grey(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?)
-    })
+    // Of the same scene, yet of another number of channels: the camera that the photons were traced for saw another background,
+    // in colour or not.
+    let saved = match (channels(&bytes).map_err(in_file)?, scene.is_coloured()) {
+        (3, true) => AnyMap::Rgb(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?),
+        (3, false) => {
+            let saved = SavedMap::<3>::from_bytes(&bytes, &hash).map_err(in_file)?;
+            AnyMap::Grey(saved.in_channels())
+        }
+        (_, true) => {
+            let saved = SavedMap::<1>::from_bytes(&bytes, &hash).map_err(in_file)?;
+            AnyMap::Rgb(saved.in_channels())
+        }
+        (_, false) => AnyMap::Grey(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?),
+    };
+    match &saved {
+        AnyMap::Grey(map) => check_saved(scene, map),
+        AnyMap::Rgb(map) => check_saved(scene, map),
+    }
+    .map_err(in_file)?;
+    Ok(saved)
 }
 
 /// The picture of saved photons.

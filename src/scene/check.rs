@@ -32,9 +32,12 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
     let centre = emitter.centre();
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
     let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
-    if !matches!(emitter, Emitter::Collimated(_))
-        && let Some(surface) = geometry.surface_at(centre)
-    {
+    let on = match emitter {
+        Emitter::Collimated(_) => None,
+        Emitter::Panel(panel) => geometry.surface_at(centre).or_else(|| lies_on(panel, geometry)),
+        Emitter::Photometric(_) | Emitter::Isotropic(_) => geometry.surface_at(centre),
+    };
+    if let Some(surface) = on {
         return fail(
             format!("emitter \"{name}\" on surface \"{}\"", label(surface)),
             "an emitter off every surface: on one, it is on neither side",
@@ -70,6 +73,27 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
 
 /// Lines across a panel, each way, along which a closed surface is looked for.
 const PANEL_LINES: u32 = 16;
+
+/// The surface that a part of a panel lies on, as far as points of it show. What crosses it meets it in a line.
+fn lies_on(panel: &Panel, geometry: &Geometry) -> Option<SurfaceId> {
+    let of_strip = |k: u32| (2.0 * f64::from(k) + 1.0) / f64::from(PANEL_LINES) - 1.0;
+    let mut met: Vec<(SurfaceId, Vec<[i64; 2]>)> = Vec::new();
+    for (i, k) in (0..PANEL_LINES).flat_map(|i| (0..PANEL_LINES).map(move |k| (i, k))) {
+        let Some(surface) = geometry.surface_at(panel.point(of_strip(i), of_strip(k))) else { continue };
+        let place = [i64::from(i), i64::from(k)];
+        let Some((_, places)) = met.iter_mut().find(|(other, _)| *other == surface) else {
+            met.push((surface, vec![place]));
+            continue;
+        };
+        let turns =
+            |[a, b]: [[i64; 2]; 2]| (a[0] - b[0]) * (place[1] - b[1]) != (a[1] - b[1]) * (place[0] - b[0]);
+        if places.len() > 1 && turns([places[0], places[1]]) {
+            return Some(surface);
+        }
+        places.push(place);
+    }
+    None
+}
 
 /// The closed surface that cuts a panel, as far as lines across it show.
 fn cut_by(panel: &Panel, geometry: &Geometry, behind: &[SurfaceId]) -> Option<SurfaceId> {

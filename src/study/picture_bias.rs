@@ -16,14 +16,12 @@ use glam::DVec2;
 
 use crate::bsdf::Rgb;
 use crate::bsdf::reflectance::luminance;
-use crate::bsdf::value::Leg;
-use crate::camera::splat::{Splat, SplatMoments, SplatSink};
+use crate::camera::splat::{self, Splat, SplatMoments, SplatSink};
 use crate::camera::{Film, Pass, Sums, View, render};
 use crate::error::Result;
 use crate::estimate::bandwidth;
 use crate::estimate::density::{Choice, Density};
 use crate::estimate::footprint::Footprints;
-use crate::estimate::replicates::FEWEST_HITS;
 use crate::run::Plan;
 use crate::run::tracer::Tracer;
 use crate::scene::Scene;
@@ -149,31 +147,10 @@ pub fn splatted(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Referen
     };
     let view = View::new(scene, spec, 0)?;
     for pixel in 0..reference.value.len() {
-        let one = photon_lm * of_one_lumen(&view, pixel);
-        let hits = reference.value[pixel] / one;
-        if hits < FEWEST_HITS as f64 {
-            let owed = one * (hits + 1.0).sqrt();
-            reference.standard_error[pixel] = reference.standard_error[pixel].hypot(owed);
-        }
+        let owed = splat::owed(&view, pixel, photon_lm, reference.value[pixel]);
+        reference.standard_error[pixel] = reference.standard_error[pixel].hypot(owed);
     }
     Ok(reference)
-}
-
-/// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where the pixel's middle looks; 0 if
-/// nothing is there.
-fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
-    let columns = view.spec().pixels[0] as usize;
-    let place = DVec2::new((pixel % columns) as f64 + 0.5, (pixel / columns) as f64 + 0.5);
-    let ray = view.pinhole().ray(place);
-    let Some(hit) = view.scene().geometry.nearest(ray.origin, ray.direction, &view.start(), &mut 0) else {
-        return 0.0;
-    };
-    let Some(seen) = view.pinhole().project(hit.position) else { return 0.0 };
-    let to_eye = -seen.direction;
-    let towards = if to_eye.dot(hit.normal) > 0.0 { hit.normal } else { -hit.normal };
-    let bsdf = view.scene().bsdf(hit.surface);
-    let f = bsdf.value_between(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
-    luminance(f) * to_eye.dot(hit.normal).abs() / (seen.distance_m * seen.distance_m) * seen.pixels_per_sr
 }
 
 /// The caustics by the photon map, as `method = "map"` makes them of the same photons.

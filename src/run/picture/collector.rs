@@ -8,7 +8,7 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::scene::Scene;
 use crate::scene::camera::CameraSpec;
 use crate::tally::Receivers;
@@ -25,6 +25,11 @@ use super::{Picture, Watch};
 /// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
 const fn bytes_of_photon<const C: usize>() -> u64 {
     2 * size_of::<Photon<C>>() as u64 + 8
+}
+
+/// Most photons that the camera has memory for at a time.
+pub(super) fn capacity<const C: usize>(spec: &CameraSpec) -> usize {
+    usize::try_from(spec.photon_memory_bytes / bytes_of_photon::<C>()).unwrap_or(usize::MAX).max(1)
 }
 
 /// What photons may leave above what is foretold: an eighth and some, so that few ranges are traced twice.
@@ -75,14 +80,13 @@ impl<'a, const C: usize> Collector<'a, C> {
         keep: bool,
         watch: Watch<'a>,
     ) -> Result<Self> {
-        let capacity = usize::try_from(spec.photon_memory_bytes / bytes_of_photon::<C>());
         Ok(Self {
             scene,
             plan: *plan,
             watch,
             eye: Eye::new(scene, spec, plan, watch)?,
             store: PhotonStore::new(scene),
-            capacity: capacity.unwrap_or(usize::MAX).max(1),
+            capacity: capacity::<C>(spec),
             held: Kept::default(),
             held_photons: 0,
             traced: 0,
@@ -236,19 +240,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         result
     }
 
-    /// Takes the photons of another run of the scene for its own.
-    ///
-    /// # Errors
-    /// More than the camera's memory holds.
-    pub(super) fn adopt(&mut self, saved: SavedMap<C>) -> Result<()> {
-        if saved.photons.len() > self.capacity {
-            return Err(Diagnostic::new(
-                Kind::Limit,
-                format!("{} saved photons", saved.photons.len()),
-                format!("at most {}, as the camera's memory holds", self.capacity),
-            )
-            .hint("a larger photon_memory_mb, as the run had that saved them"));
-        }
+    /// Takes the photons of another run of the scene for its own; [`super::check_saved`] has passed them.
+    pub(super) fn adopt(&mut self, saved: SavedMap<C>) {
         self.planned = saved.photons_traced;
         self.replicates = saved.replicates;
         (self.held_of, self.whole) = (0..saved.replicates, true);
@@ -257,7 +250,6 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.held_photons = saved.photons.len();
         let (scattered, not): (Vec<_>, Vec<_>) = saved.photons.into_iter().partition(Photon::is_scattered);
         self.held = [vec![not], vec![scattered]];
-        Ok(())
     }
 
     /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that of the run as

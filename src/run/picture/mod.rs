@@ -16,7 +16,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use crate::bsdf::{Grey, Rgb};
-use crate::camera::Film;
+use crate::camera::splat::Splat;
+use crate::camera::{Film, View};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
@@ -107,14 +108,16 @@ fn camera_of(scene: &Scene) -> Result<&CameraSpec> {
 /// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene without one passes.
 ///
 /// # Errors
-/// A picture that takes more memory than pictures may; splatting through a lens: a splat meets a point.
+/// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface); splatting through a lens: a splat meets a point.
 pub fn check(scene: &Scene) -> Result<()> {
     let Some(spec) = &scene.camera else { return Ok(()) };
+    let splats = spec.method == Method::Splat;
     if scene.is_coloured() {
-        Film::<3>::check_memory(spec.pixels)?;
+        check_memory::<3>(spec.pixels, splats)?;
     } else {
-        Film::<1>::check_memory(spec.pixels)?;
+        check_memory::<1>(spec.pixels, splats)?;
     }
+    View::new(scene, spec, 0)?;
     if spec.method == Method::Splat && spec.lens_radius_m > 0.0 {
         return Err(Diagnostic::new(
             Kind::Range,
@@ -124,6 +127,10 @@ pub fn check(scene: &Scene) -> Result<()> {
         .hint("method = \"map\" sees through a lens"));
     }
     Ok(())
+}
+
+fn check_memory<const C: usize>(pixels: [u32; 2], splats: bool) -> Result<()> {
+    if splats { Splat::<C>::check_memory(pixels) } else { Film::<C>::check_memory(pixels) }
 }
 
 /// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is that of
@@ -172,16 +179,12 @@ fn with_channels<const C: usize, T: Channels<C>>(
     }
 }
 
-/// The picture of photons that another run of the same scene saved.
+/// Whether a scene's camera can see photons that another run saved; told before anything is made of them.
 ///
 /// # Errors
-/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have.
-pub fn picture_of_saved<const C: usize>(
-    scene: &Scene,
-    plan: &Plan,
-    saved: SavedMap<C>,
-    watch: Watch<'_>,
-) -> Result<Picture<C>> {
+/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have; more than the
+/// camera's memory holds.
+pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result<()> {
     let spec = camera_of(scene)?;
     check(scene)?;
     if spec.method == Method::Splat {
@@ -199,9 +202,29 @@ pub fn picture_of_saved<const C: usize>(
             "photons of the same scene",
         ));
     }
+    let (number, most) = (saved.photons.len(), collector::capacity::<C>(spec));
+    if number > most {
+        let required = format!("at most {most}, for which the camera has memory");
+        return Err(Diagnostic::new(Kind::Limit, format!("{number} saved photons"), required)
+            .hint("a photon_memory_mb as large as that of the run that saved them"));
+    }
+    Ok(())
+}
+
+/// The picture of photons that another run of the same scene saved.
+///
+/// # Errors
+/// Those of [`check_saved`].
+pub fn picture_of_saved<const C: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    saved: SavedMap<C>,
+    watch: Watch<'_>,
+) -> Result<Picture<C>> {
+    check_saved(scene, &saved)?;
     let started = Instant::now();
-    let mut collector = Collector::new(scene, spec, plan, false, watch)?;
-    collector.adopt(saved)?;
+    let mut collector = Collector::new(scene, camera_of(scene)?, plan, false, watch)?;
+    collector.adopt(saved);
     let mut picture = collector.finish()?;
     picture.summary.time_s = started.elapsed().as_secs_f64();
     Ok(picture)

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use crate::bsdf::luminance_of;
-use crate::camera::Film;
-use crate::camera::splat::{Splat, SplatMoments};
+use crate::camera::splat::{self, Splat, SplatMoments};
+use crate::camera::{Film, View};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
@@ -48,7 +48,7 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     let started = Instant::now();
     eye.add_emitters()?;
     let Seeing { film, killed, unseen } = eye.finish();
-    let film = with_splats(film, &moments, &outcome);
+    let film = with_splats(film, &moments, &outcome, &View::new(scene, spec, plan.seed)?);
     let cost = Cost::of(&film);
     let summary = PictureSummary {
         method: Method::Splat,
@@ -66,20 +66,27 @@ pub(super) fn trace<const C: usize, T: Channels<C>>(
     Ok((outcome, Picture { film, summary, photons: None }))
 }
 
-/// The film of the eye's paths with the splats added to its pixels; there is no bias.
-fn with_splats<const C: usize>(mut film: Film<C>, moments: &SplatMoments<C>, outcome: &Outcome) -> Film<C> {
+/// The film of the eye's paths with the splats added to its pixels; there is no bias. Pixels that an interrupt left unseen stay so.
+fn with_splats<const C: usize>(
+    mut film: Film<C>,
+    moments: &SplatMoments<C>,
+    outcome: &Outcome,
+    view: &View<'_>,
+) -> Film<C> {
     let (photon_lm, r) = (outcome.photon_lm, f64::from(outcome.replicates));
     for (pixel, (sum, square)) in moments.sum.iter().zip(&moments.square).enumerate() {
+        if film.bias[pixel].is_nan() {
+            continue;
+        }
         for (value, sum) in film.value[pixel].iter_mut().zip(sum) {
             *value += sum * photon_lm;
         }
         let y = luminance_of(sum);
         // R s^2 of the R partial sums.
         let variance = r / (r - 1.0) * (square - y * y / r).max(0.0) * photon_lm * photon_lm;
-        let of_eye = film.standard_error[pixel];
+        let (of_eye, owed) = (film.standard_error[pixel], splat::owed(view, pixel, photon_lm, y * photon_lm));
         film.standard_error[pixel] =
-            if outcome.replicates < 2 { f64::NAN } else { (variance + of_eye * of_eye).sqrt() };
-        film.bias[pixel] = 0.0;
+            if outcome.replicates < 2 { f64::NAN } else { (variance + of_eye * of_eye + owed * owed).sqrt() };
     }
     film
 }

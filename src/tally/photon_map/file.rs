@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 
+use crate::bsdf::luminance_of;
 use crate::error::{Diagnostic, Kind, Result};
 
 use super::record::{Frame, Photon};
@@ -115,15 +116,17 @@ impl<const C: usize> SavedMap<C> {
         check_digest(bytes)?;
         reader.rest = &reader.rest[..reader.rest.len().saturating_sub(DIGEST)];
         let scene_hash = reader.text()?;
+        let settings = reader.text()?;
         if scene_hash != expected_scene_hash {
             return Err(Diagnostic::new(
                 Kind::Range,
-                format!("photons of the scene with hash {scene_hash}"),
-                format!("photons of this scene, hash {expected_scene_hash}"),
+                format!("photons with hash {scene_hash}, traced by {settings}"),
+                format!("photons of this scene and these settings, hash {expected_scene_hash}"),
             )
-            .hint("trace the photons again: the scene or a file of it has changed"));
+            .hint(
+                "ask for the same settings; if they are, trace the photons again: the scene or a file of it has changed",
+            ));
         }
-        let settings = reader.text()?;
         let photons_traced = u64::from_le_bytes(reader.take()?);
         let replicates = u32::from_le_bytes(reader.take()?);
         let photon_lm = f64::from_le_bytes(reader.take()?);
@@ -132,6 +135,21 @@ impl<const C: usize> SavedMap<C> {
         let saved = Self { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons };
         saved.check()?;
         Ok(saved)
+    }
+
+    /// The same photons in another number of channels, 1 or 3: in three, one channel is white; three make one by their luminance,
+    /// exactly where no surface coloured them.
+    pub fn in_channels<const D: usize>(self) -> SavedMap<D> {
+        let Self { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons } = self;
+        let in_channels = |p: &Photon<C>| {
+            let weight: [f64; C] = p.weight.map(f64::from);
+            let weight =
+                if C == D { std::array::from_fn(|c| p.weight[c]) } else { [luminance_of(&weight) as f32; D] };
+            let Photon { cell, direction, primitive, tag, .. } = *p;
+            Photon { cell, direction, primitive, tag, weight }
+        };
+        let photons = photons.iter().map(in_channels).collect();
+        SavedMap { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons }
     }
 
     /// That the numbers are such as a run writes.
