@@ -3,7 +3,7 @@
 //! An emitter turns coordinates into a start and a direction; every photon of a scene carries the same flux, so emitters
 //! are chosen in proportion to theirs ([`Emitters`], METHOD 2: the chooser's coordinate goes on to the table cell).
 //!
-//! To add an emitter: a file beside these, a line in [`Emitter`], arms in its three methods; the scene file's name for it
+//! To add an emitter: a file beside these, a line in [`Emitter`], arms in its methods; the scene file's name for it
 //! is given in `scene`.
 
 pub mod collimated;

@@ -1,8 +1,7 @@
-//! What the camera's tests share: pictures of one pixel with their parts told apart, photons by a sink of the tests' own,
-//! and the text of small scenes.
+//! What the camera's tests share: pictures of one pixel with their parts told apart, photons as a run keeps them, and the
+//! text of small scenes.
 #![allow(dead_code)]
 
-use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use caustix::bsdf::Grey;
@@ -12,74 +11,24 @@ use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
 use caustix::scene::camera::CameraSpec;
 use caustix::sequence::owen::OwenPoints;
-use caustix::tally::photon_map::record::{FRONT, SCATTERED, pack};
-use caustix::tally::photon_map::{Frame, Photon, PhotonMap};
+use caustix::tally::Receivers;
+use caustix::tally::photon_map::{PhotonMap, PhotonStore};
 use caustix::transport::parallel::{How, trace_range};
-use caustix::transport::{Arrival, Sink};
 use glam::DVec3;
 
-/// Keeps every arrival on what scatters, except the first of a photon that nothing happened to.
-struct Keeper<'a> {
-    scene: &'a Scene,
-    frame: Frame,
-    replicate: u32,
-    /// Whether an event of this photon was at a surface that scatters.
-    scattered: bool,
-    kept: Vec<Photon<1>>,
-    store: &'a Mutex<Vec<Photon<1>>>,
-}
-
-impl Sink<Grey> for Keeper<'_> {
-    fn arrive(&mut self, arrival: &Arrival<'_, Grey>) {
-        if arrival.events == 0 {
-            self.scattered = false;
-        }
-        let scatters = self.scene.bsdf(arrival.hit.surface).scatters();
-        if scatters && arrival.events > 0 {
-            let front = if arrival.hit.front { FRONT } else { 0 };
-            let scattered = if self.scattered { SCATTERED } else { 0 };
-            self.kept.push(Photon {
-                cell: self.frame.cell(arrival.hit.position),
-                direction: pack(arrival.direction),
-                primitive: arrival.hit.primitive,
-                tag: self.replicate | front | scattered,
-                weight: [1.0],
-            });
-        }
-        self.scattered |= scatters;
-    }
-}
-
-impl Drop for Keeper<'_> {
-    fn drop(&mut self) {
-        self.store.lock().unwrap().append(&mut self.kept);
-    }
-}
-
-/// The photons of some replicates of 2^m photons each: (caustic, diffuse).
+/// The photons of some replicates of 2^m photons each, as a run keeps them: (caustic, diffuse).
 pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
-    let (low, high) = scene.geometry.bounds();
-    let frame = Frame::new(low, high);
-    let store = Mutex::new(Vec::new());
+    let mut store = PhotonStore::<1>::new(scene);
+    let nobody = Receivers::new(&scene.geometry, &[]);
     let interrupt = AtomicBool::new(false);
     for replicate in replicates {
         let how =
             How { reuse: true, sampling: Sampling::default(), interrupt: &interrupt, progress: &|_| {} };
-        trace_range(scene, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, || Keeper {
-            scene,
-            frame,
-            replicate,
-            scattered: false,
-            kept: Vec::new(),
-            store: &store,
-        });
+        let sink = || store.sink(nobody.sink(), replicate);
+        trace_range(scene, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
     }
-    let all = store.into_inner().unwrap();
-    let (diffuse, caustic): (Vec<_>, Vec<_>) = all.into_iter().partition(|p| p.is_scattered());
-    [caustic, diffuse].map(|mut photons| {
-        photons.sort_by_key(|p| (p.tag, p.cell, p.direction, p.primitive));
-        PhotonMap::build(photons, frame, 1.0)
-    })
+    let frame = store.frame();
+    store.take().unwrap().map(|blocks| PhotonMap::build(blocks.concat(), frame, 1.0))
 }
 
 /// Replicates of every test.
