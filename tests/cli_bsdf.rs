@@ -1,14 +1,15 @@
 //! `caustix bsdf` as a stranger types it: what is printed, the names that programs rely on, plots, exit codes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
+mod cli_support;
+
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
+use cli_support::Stranger;
 use serde_json::Value;
-use tempfile::TempDir;
 
 /// A surface that reflects and transmits; f falls linearly (times cosine) from its value at the pole to 0 at 90 degrees, so
 /// the albedo of f is 2 pi f (1 - 2 / pi).
@@ -38,33 +39,10 @@ fn albedo_of(f: f64) -> f64 {
     2.0 * PI * f * (1.0 - 2.0 / PI)
 }
 
-struct Stranger {
-    folder: TempDir,
-}
-
-impl Stranger {
-    fn new(files: &[(&str, &str)]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, text) in files {
-            fs::write(folder.path().join(name), text).unwrap();
-        }
-        Self { folder }
-    }
-
-    /// Types the line; the exit code and what it says on stdout and stderr.
-    fn types(&self, line: &str) -> (i32, String, String) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        command.args(line.split_whitespace()).current_dir(self.folder.path());
-        let Output { status, stdout, stderr } = command.output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        (status.code().unwrap(), text(stdout), text(stderr))
-    }
-
-    fn json(&self, file: &str) -> Value {
-        let (code, out, err) = self.types(&format!("bsdf {file} --json"));
-        assert_eq!((code, err.as_str()), (0, ""));
-        serde_json::from_str(&out).unwrap()
-    }
+fn json(s: &Stranger, file: &str) -> Value {
+    let (code, out, err) = s.types(&format!("bsdf {file} --json"));
+    assert_eq!((code, err.as_str()), (0, ""));
+    serde_json::from_str(&out).unwrap()
 }
 
 fn keys(value: &Value) -> BTreeSet<&str> {
@@ -78,7 +56,7 @@ fn near(value: &Value, exact: f64) {
 
 #[test]
 fn the_printed_report_has_angles_albedos_and_declared_totals() {
-    let s = Stranger::new(&[("sheet.scatter", SHEET)]);
+    let s = Stranger::with(&[("sheet.scatter", SHEET)]);
     let (code, out, err) = s.types("bsdf sheet.scatter");
     assert_eq!(code, 0, "{err}");
     for line in [
@@ -111,8 +89,8 @@ fn the_printed_report_has_angles_albedos_and_declared_totals() {
 
 #[test]
 fn json_has_the_same_and_keeps_its_names() {
-    let s = Stranger::new(&[("sheet.scatter", SHEET)]);
-    let json = s.json("sheet.scatter");
+    let s = Stranger::with(&[("sheet.scatter", SHEET)]);
+    let json = json(&s, "sheet.scatter");
     let top = ["energy", "file", "format", "lobes", "name", "reciprocity", "warnings"];
     assert_eq!(keys(&json), top.into());
     let lobe = [
@@ -160,8 +138,8 @@ fn too_much_light_colour_and_missing_symmetry_are_told() {
         block(0.3, 0.1, 0.0),
         block(r, g, b)
     );
-    let s = Stranger::new(&[("paint.scatter", &text)]);
-    let json = s.json("paint.scatter");
+    let s = Stranger::with(&[("paint.scatter", &text)]);
+    let json = json(&s, "paint.scatter");
     let energy = &json["energy"][0];
     near(&energy["max_albedo"], 1.25);
     assert_eq!(
@@ -180,19 +158,19 @@ fn too_much_light_colour_and_missing_symmetry_are_told() {
 
 #[test]
 fn own_tables_conserve_energy_and_plot() {
-    let s = Stranger::new(&[]);
+    let s = Stranger::with(&[]);
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("brdf_tables");
     let mut count = 0;
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "scatter") {
-            let json = s.json(&path.display().to_string());
+            let json = json(&s, &path.display().to_string());
             for energy in json["energy"].as_array().unwrap() {
                 assert_eq!(energy["conserved"], true, "{}: {energy}", path.display());
             }
             let (code, _, err) = s.types(&format!("bsdf {} --plot a.svg", path.display()));
             assert_eq!(code, 0, "{err}");
-            let svg = fs::read_to_string(s.folder.path().join("a.svg")).unwrap();
+            let svg = fs::read_to_string(s.folder().join("a.svg")).unwrap();
             assert!(svg.ends_with("</svg>\n") && !svg.contains("NaN"), "{}", path.display());
             assert!(
                 svg.contains("cd/lm") && svg.contains(json["name"].as_str().unwrap()),
@@ -207,10 +185,10 @@ fn own_tables_conserve_energy_and_plot() {
 
 #[test]
 fn plots_are_written_by_their_ending() {
-    let s = Stranger::new(&[("sheet.scatter", SHEET)]);
+    let s = Stranger::with(&[("sheet.scatter", SHEET)]);
     let (code, _, err) = s.types("bsdf sheet.scatter --plot a.PNG");
     assert_eq!(code, 0, "{err}");
-    assert!(fs::read(s.folder.path().join("a.PNG")).unwrap().starts_with(b"\x89PNG"));
+    assert!(fs::read(s.folder().join("a.PNG")).unwrap().starts_with(b"\x89PNG"));
     let (code, _, err) = s.types("bsdf sheet.scatter --plot a.gif");
     assert_eq!(code, 1);
     assert!(err.contains("--plot a.gif; required: a name ending in .svg or .png"), "{err}");
@@ -219,7 +197,7 @@ fn plots_are_written_by_their_ending() {
 #[test]
 fn mistakes_exit_1_with_their_place_and_usage_exits_2() {
     let bad = SHEET.replace("0.20 0.20", "0.20 x");
-    let s = Stranger::new(&[("bad.scatter", &bad), ("x.bsdf", "OPTIS - Anisotropic BSDF"), ("empty", "")]);
+    let s = Stranger::with(&[("bad.scatter", &bad), ("x.bsdf", "OPTIS - Anisotropic BSDF"), ("empty", "")]);
     for (line, code, parts) in [
         ("bsdf bad.scatter", 1, &["bad.scatter:12:6: found ", "required: "][..]),
         ("bsdf x.bsdf", 1, &["x.bsdf:1:1: found a Speos file"]),

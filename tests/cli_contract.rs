@@ -1,54 +1,15 @@
 //! The command as a stranger types it: exit codes, messages, what is written, and the names that other programs rely on.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
+mod cli_support;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use cli_support::Stranger;
 use serde_json::Value;
-use tempfile::TempDir;
-
-/// The command in a folder of its own.
-struct Stranger {
-    folder: TempDir,
-}
-
-impl Stranger {
-    fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        command.args(line.split_whitespace()).current_dir(self.folder.path());
-        command
-    }
-
-    /// Types the line; the exit code and what it says on stdout and stderr.
-    fn types(&self, line: &str) -> (i32, String, String) {
-        let Output { status, stdout, stderr } = self.command(line).output().unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        (status.code().unwrap(), text(stdout), text(stderr))
-    }
-
-    /// The same for a line that must fail with this code and say all of these.
-    fn is_told(&self, line: &str, code: i32, all: &[&str]) {
-        let (exit, out, err) = self.types(line);
-        assert_eq!(exit, code, "caustix {line}\n{out}{err}");
-        for part in all {
-            assert!(err.contains(part), "caustix {line}: no \"{part}\" in\n{err}");
-        }
-    }
-
-    fn report(&self, folder: &str) -> Value {
-        serde_json::from_str(&fs::read_to_string(self.path(folder).join("report.json")).unwrap()).unwrap()
-    }
-}
 
 fn project(path: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path).display().to_string()
@@ -88,7 +49,7 @@ fn what_is_not_built_yet_says_so_and_exits_2() {
     for line in ["render --error 1", "render --time 3", "render --resume"] {
         s.is_told(line, 2, &["not available yet"]);
     }
-    assert_eq!(fs::read_dir(s.folder.path()).unwrap().count(), 0);
+    assert_eq!(fs::read_dir(s.folder()).unwrap().count(), 0);
 }
 
 #[test]
@@ -415,7 +376,7 @@ fn an_exr_says_how_to_repeat_the_run_and_nothing_else() {
     ] {
         assert!(text.lines().any(|l| l.contains(name)), "{name}");
     }
-    let folder = s.folder.path().display().to_string();
+    let folder = s.folder().display().to_string();
     for word in [folder.as_str(), "scene.toml", "thread", "capDate", "utcOffset", "elapsed"] {
         assert!(!text.contains(word), "the EXR names {word}");
     }

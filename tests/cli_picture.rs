@@ -1,12 +1,13 @@
 //! A picture by the command: the same bytes for any number of threads and from saved photons; maps that are refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
+mod cli_support;
+
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
+use cli_support::Stranger;
 use serde_json::Value;
-use tempfile::TempDir;
 
 /// A glass ball over a table under a beam and a panel, before a camera: `table` is the table's reflectance, `keys` more keys of
 /// the camera.
@@ -61,27 +62,25 @@ samples = 4
 const GREY: &str = "0.6";
 const COLOUR: &str = "[0.6, 0.4, 0.2]";
 
-struct Folder(TempDir);
+struct Folder(Stranger);
 
 impl Folder {
     fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
+        Self(Stranger::new())
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
+        self.0.path(name)
     }
 
     fn scene(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
+        self.0.write(name, text);
     }
 
     /// `caustix render LINE` here; the exit code and what was said.
     fn render(&self, line: &str) -> (i32, String) {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        command.arg("render").args(line.split_whitespace()).args(["--photons", "2^15", "--replicates", "4"]);
-        let output = command.current_dir(self.0.path()).output().unwrap();
-        (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+        let (code, _, said) = self.0.types(&format!("render {line} --photons 2^15 --replicates 4"));
+        (code, said)
     }
 
     /// A picture that must succeed: the bytes of camera.exr and camera.png, and the report.
@@ -194,10 +193,7 @@ fn check_refuses_the_cameras_that_render_refuses() {
     for (text, part) in [(on_the_ball, "the camera on surface"), (too_large, "which takes")] {
         folder.scene("scene.toml", &text);
         folder.refused("scene.toml", &[part]);
-        let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        let checked = command.args(["check", "scene.toml"]).current_dir(folder.0.path()).output().unwrap();
-        let said = String::from_utf8(checked.stderr).unwrap();
-        assert!(checked.status.code() == Some(1) && said.contains(part), "{said}");
+        folder.0.is_told("check scene.toml", 1, &[part]);
     }
 }
 

@@ -1,9 +1,9 @@
 //! Pictures of hardly any photons, of one pixel, of too many: numbers with errors that say so, or a refusal.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
+mod cli_support;
 mod picture_support;
 
-use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
 use caustix::bsdf::{Bsdf, Dielectric, Reflectance};
@@ -13,6 +13,7 @@ use caustix::image::exr::{OwnedData, read_maps};
 use caustix::run::picture::{AnyPicture, Picture, trace_picture};
 use caustix::scene::Scene;
 use caustix::scene::camera::{Bandwidth, CameraSpec, Method};
+use cli_support::Stranger;
 use glam::DVec3;
 use picture_support::{beam, grey, plan, rectangle, scene, sphere, unwatched};
 
@@ -189,17 +190,14 @@ fov_deg = 0.1
 
 #[test]
 fn the_command_makes_a_picture_of_one_pixel_and_refuses_one_of_8192_by_8192_before_anything_is_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
+    let s = Stranger::new();
     let go = |line: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_caustix"));
-        let output = command.args(line.split_whitespace()).current_dir(folder.path()).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (output.status.code().unwrap(), text(output.stdout) + &text(output.stderr))
+        let (code, out, err) = s.types(line);
+        (code, out + &err)
     };
-    std::fs::write(path("one.toml"), format!("{SCENE}pixels = [1, 1]\n")).unwrap();
+    s.write("one.toml", format!("{SCENE}pixels = [1, 1]\n"));
     assert_eq!(go("render one.toml --photons 1024 -o one").0, 0);
-    let maps = read_maps(path("one/camera.exr")).unwrap();
+    let maps = read_maps(s.path("one/camera.exr")).unwrap();
     assert_eq!((maps.width, maps.height), (1, 1));
     // A lamp of 100 / 4 pi cd at 1 m over a plate that scatters a half.
     let exact = 100.0 / (4.0 * std::f64::consts::PI) * 0.5 / std::f64::consts::PI;
@@ -207,9 +205,9 @@ fn the_command_makes_a_picture_of_one_pixel_and_refuses_one_of_8192_by_8192_befo
         panic!("Y")
     };
     assert!((f64::from(y[0]) / exact - 1.0).abs() < 1e-3, "{} {exact}", y[0]);
-    assert!(path("one/camera.png").is_file());
+    assert!(s.path("one/camera.png").is_file());
 
-    std::fs::write(path("large.toml"), format!("{SCENE}pixels = [8192, 8192]\n")).unwrap();
+    s.write("large.toml", format!("{SCENE}pixels = [8192, 8192]\n"));
     for line in ["render large.toml --photons 1024 -o large", "check large.toml", "check large.toml --json"] {
         let (code, said) = go(line);
         assert_eq!(code, 1, "{line}: {said}");
@@ -217,9 +215,9 @@ fn the_command_makes_a_picture_of_one_pixel_and_refuses_one_of_8192_by_8192_befo
             assert!(said.contains(part), "{line}: no \"{part}\" in\n{said}");
         }
     }
-    assert!(!path("large").exists());
+    assert!(!s.path("large").exists());
     // What `check` says a picture takes is part of its memory.
-    std::fs::write(path("some.toml"), format!("{SCENE}pixels = [1600, 1000]\n")).unwrap();
+    s.write("some.toml", format!("{SCENE}pixels = [1600, 1000]\n"));
     let (code, said) = go("check some.toml --json");
     let memory_mb = serde_json::from_str::<serde_json::Value>(&said).unwrap()["memory_mb"].as_f64().unwrap();
     assert!(code == 0 && (153.6..155.0).contains(&memory_mb), "{memory_mb}");
