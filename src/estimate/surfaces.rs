@@ -132,3 +132,58 @@ impl Wanted {
         if self.sought_m > 0.0 { (1.1 * self.sought_m).min(2.0 * guess_m) } else { guess_m }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::geometry::{Geometry, Rectangle, Shape, Surface};
+    use crate::tally::photon_map::Frame;
+    use crate::tally::photon_map::record::FRONT;
+
+    fn sheets() -> Geometry {
+        let sheet = |z: f64| {
+            let shape = Shape::Rectangle(Rectangle::new(DVec3::Z * z, DVec3::X, DVec3::Y).unwrap());
+            Surface { name: format!("at {z}"), shape }
+        };
+        Geometry::build(vec![sheet(0.0), sheet(1.0)]).unwrap()
+    }
+
+    /// Photons in a row on a primitive.
+    fn row(n: u32, primitive: u32, tag: u32) -> Vec<Photon<1>> {
+        let cell = |i: u32| [i << 16, i << 15, if primitive < 2 { 0 } else { u32::MAX }];
+        (0..n).map(|i| Photon { cell: cell(i), direction: 0, primitive, tag, weight: [1.0] }).collect()
+    }
+
+    #[test]
+    fn a_search_reads_the_photons_of_its_side_of_its_surface_alone() {
+        let geometry = sheets();
+        let footprints = Footprints::new(&geometry);
+        let photons = [row(5, 0, FRONT), row(1000, 1, 0), row(300, 2, FRONT), row(20, 3, FRONT)].concat();
+        let (low, high) = geometry.bounds();
+        let map = PhotonMap::build(photons, Frame::new(low, high), 0.0);
+        for radius_m in [0.0, 0.5] {
+            let sorted = BySurface::new(&footprints, &map, radius_m);
+            let number = |surface, front| sorted.side(&map, surface, front).photons().len();
+            assert_eq!([number(0, true), number(0, false)], [5, 1000]);
+            assert_eq!([number(1, true), number(1, false)], [320, 0]);
+            let side = sorted.side(&map, 0, true);
+            assert!(side.photons().iter().all(|p| p.primitive == 0 && p.is_front()));
+            assert!(side.built_for_m() >= radius_m);
+        }
+    }
+
+    #[test]
+    fn nothing_is_copied_where_one_side_of_one_surface_has_all() {
+        let geometry = sheets();
+        let footprints = Footprints::new(&geometry);
+        let (low, high) = geometry.bounds();
+        let map = PhotonMap::build([row(7, 2, 0), row(9, 3, 0)].concat(), Frame::new(low, high), 0.0);
+        let sorted = BySurface::new(&footprints, &map, 0.5);
+        assert!(std::ptr::eq(sorted.side(&map, 1, false), &map));
+        for (surface, front) in [(0, false), (0, true), (1, true)] {
+            assert!(sorted.side(&map, surface, front).photons().is_empty());
+        }
+    }
+}
