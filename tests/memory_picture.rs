@@ -80,7 +80,7 @@ fn photons_take_what_the_camera_has_for_them_and_a_refused_picture_takes_nothing
     let red = Bsdf::Lambertian { reflectance: Reflectance::rgb([0.9, 0.5, 0.4]) };
     on_threads(2, || {
         for (label, table, bytes_of_photon) in [("one channel", grey(0.5), 28), ("colour", red, 36)] {
-            for bandwidth in [Bandwidth::Automatic, Bandwidth::Radius(0.02)] {
+            for bandwidth in [Bandwidth::Automatic, Bandwidth::Radius(0.02), Bandwidth::Nearest(100)] {
                 let with = |bytes| ball_on_table(table.clone(), bytes, bandwidth, [16, 12]);
                 // Threads and their stacks are made once.
                 peak(&with(1 << 20), 1 << 12);

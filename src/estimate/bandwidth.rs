@@ -10,11 +10,11 @@
 
 use rayon::prelude::*;
 
-use crate::scene::camera::Kernel;
-use crate::tally::photon_map::PhotonMap;
+use crate::scene::camera::{Bandwidth, FEWEST_NEIGHBOURS, Kernel};
+use crate::tally::photon_map::{Photon, PhotonMap};
 
 use super::density::BIAS_PER_DIFFERENCE;
-use super::footprint::Footprints;
+use super::footprint::{Footprint, Footprints};
 use super::kernel::disc_m2;
 
 /// Photons that the choice is made at.
@@ -29,6 +29,12 @@ const RUNGS: usize = 21;
 /// Median number of neighbours within the widest radius of the ladder, and so twice that of the widest that can be chosen:
 /// beyond it a picture takes too long.
 const MOST_NEIGHBOURS: usize = 1024;
+
+/// Part of all photons that a bandwidth holds at most: one that holds more says nothing of a place.
+const MOST_OF_ALL: f64 = 1.0 / 32.0;
+
+/// Neighbours that are not too many, however few photons there are.
+const FEWEST_LOCAL: u32 = 16;
 
 /// Fewest neighbours in the mean that a radius may have.
 const LEAST_NEIGHBOURS: f64 = 8.0;
@@ -49,10 +55,15 @@ pub struct Chosen {
     pub radius_m: f64,
     /// Mean number of photons within it, about a photon of this map.
     pub mean_neighbours: f64,
-    /// Median of the size of the bias estimate (with its noise), as a fraction of the density, about a photon.
-    pub median_bias: f64,
-    /// Root of the mean of the squared relative standard error.
-    pub relative_error: f64,
+    /// The nearest that are taken at least, of all photons of the run.
+    pub neighbours: u32,
+}
+
+impl Chosen {
+    /// As a density is to have it.
+    pub fn bandwidth(&self) -> Bandwidth {
+        Bandwidth::AtLeast { radius_m: self.radius_m, neighbours: self.neighbours }
+    }
 }
 
 /// The radius with the least mean squared relative error for 1 / `fraction` times the photons of this map: a run that is
@@ -65,13 +76,10 @@ pub fn choose<const C: usize>(
     fraction: f64,
 ) -> Chosen {
     let ladder = Ladder::new(footprints, map, replicates);
+    let neighbours = least_neighbours(map.photons().len() as f64 / fraction);
     let Some(ladder) = ladder else {
-        return Chosen {
-            radius_m: without_photons(footprints, map),
-            mean_neighbours: map.photons().len() as f64,
-            median_bias: f64::NAN,
-            relative_error: f64::NAN,
-        };
+        let mean_neighbours = map.photons().len() as f64;
+        return Chosen { radius_m: without_photons(footprints, map), mean_neighbours, neighbours };
     };
     let places = places(map.photons().len(), POINTS);
     let points: Vec<Point> =
@@ -84,15 +92,12 @@ pub fn choose<const C: usize>(
         .filter(|&i| count(i) * fraction.recip() >= LEAST_NEIGHBOURS)
         .min_by(|&a, &b| costs[a].total_cmp(&costs[b]).then(b.cmp(&a)))
         .unwrap_or(candidates - 1);
-    let mean = |of: &dyn Fn(&Point) -> f64| points.iter().map(of).sum::<f64>() / points.len().max(1) as f64;
-    let mut bias: Vec<f64> = points.iter().map(|p| p.relative_bias(best)).collect();
-    bias.sort_by(f64::total_cmp);
-    Chosen {
-        radius_m: ladder.radii_m[best],
-        mean_neighbours: mean(&|p| p.count[best]),
-        median_bias: bias.get(bias.len() / 2).copied().unwrap_or(f64::NAN),
-        relative_error: mean(&|p| fraction * p.relative_variance(best)).sqrt(),
-    }
+    Chosen { radius_m: ladder.radii_m[best], mean_neighbours: count(best), neighbours }
+}
+
+/// The nearest that are taken at least, of so many photons in all.
+fn least_neighbours(photons: f64) -> u32 {
+    ((photons * MOST_OF_ALL) as u32).clamp(FEWEST_LOCAL, FEWEST_NEIGHBOURS)
 }
 
 /// Mean squared relative error of every rung.
@@ -140,10 +145,6 @@ impl Point {
         let difference2 = self.difference[rung] * self.difference[rung] - self.noise[rung];
         difference2 * (BIAS_PER_DIFFERENCE * BIAS_PER_DIFFERENCE) / (self.density * self.density)
     }
-
-    fn relative_bias(&self, rung: usize) -> f64 {
-        self.difference[rung].abs() * BIAS_PER_DIFFERENCE / self.density
-    }
 }
 
 impl Ladder {
@@ -152,15 +153,16 @@ impl Ladder {
         if map.photons().len() < FEWEST {
             return None;
         }
-        // One more: the photon itself is among them.
-        let k = MOST_NEIGHBOURS.min(map.photons().len() / 2) + 1;
+        // The widest that can be chosen has half the area of the widest of the ladder. One more: the photon itself is among them.
+        let local = (2.0 * MOST_OF_ALL * map.photons().len() as f64) as usize;
+        let k = MOST_NEIGHBOURS.min(local.max(FEWEST_LOCAL as usize)) + 1;
         let mut found = Vec::new();
         let mut reach: Vec<f64> = Vec::new();
         for place in places(map.photons().len(), 63) {
             let photon = &map.photons()[place];
             let centre = map.position(photon);
             let Some(about) = footprints.of_primitive(centre, photon.primitive) else { continue };
-            let holds = |p: &_| holds(&about, map, p);
+            let holds = |p: &Photon<C>| p.is_front() == photon.is_front() && holds(&about, map, p);
             map.nearest(centre, k, map.built_for_m(), holds, &mut found);
             reach.extend(found.last().map(|f| f.0.sqrt()).filter(|r| *r > 0.0));
         }
@@ -276,11 +278,7 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (mean, if n > 1.0 { squares / (n - 1.0) } else { 0.0 })
 }
 
-fn holds<const C: usize>(
-    about: &super::footprint::Footprint<'_>,
-    map: &PhotonMap<C>,
-    photon: &crate::tally::photon_map::Photon<C>,
-) -> bool {
+fn holds<const C: usize>(about: &Footprint<'_>, map: &PhotonMap<C>, photon: &Photon<C>) -> bool {
     about.holds(photon.primitive, || map.position(photon))
 }
 

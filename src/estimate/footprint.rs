@@ -103,6 +103,11 @@ impl<'g> Footprints<'g> {
 }
 
 impl Footprint<'_> {
+    /// The point it is about.
+    pub fn centre(&self) -> DVec3 {
+        self.centre
+    }
+
     /// Whether a photon on this primitive at this place counts.
     #[inline(always)]
     pub fn holds(&self, primitive: u32, position: impl FnOnce() -> DVec3) -> bool {

@@ -4,5 +4,8 @@ pub mod bandwidth;
 pub mod density;
 pub mod faces;
 pub mod footprint;
+pub mod gathered;
 pub mod kernel;
 pub mod replicates;
+mod sum;
+mod surfaces;

@@ -25,7 +25,7 @@ use crate::estimate::footprint::Footprints;
 use crate::run::Plan;
 use crate::run::tracer::Tracer;
 use crate::scene::Scene;
-use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS};
+use crate::scene::camera::{Bandwidth, CameraSpec};
 use crate::tally::Receivers;
 use crate::tally::photon_map::sink::scattering_surfaces;
 use crate::tally::photon_map::{PhotonMap, PhotonStore};
@@ -173,8 +173,7 @@ pub fn mapped(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Mapped> {
     let footprints = Arc::new(Footprints::new(&scene.geometry));
     let bandwidth = match spec.bandwidth {
         Bandwidth::Automatic if !map.photons().is_empty() => {
-            let found = bandwidth::choose(&footprints, &map, spec.kernel, plan.replicates, 1.0);
-            Bandwidth::AtLeast { radius_m: found.radius_m, neighbours: FEWEST_NEIGHBOURS }
+            bandwidth::choose(&footprints, &map, spec.kernel, plan.replicates, 1.0).bandwidth()
         }
         named => named,
     };
