@@ -115,6 +115,64 @@ fn inside_glass_luminance_is_greater_by_the_square_of_the_index() {
     assert_close("in glass", seen.all, 2.25 / 1.04, 0.01);
 }
 
+/// The mean over a picture's pixels, each a net of its own, and its standard error.
+fn mean_emission(scene: &Scene, spec: &CameraSpec) -> Part {
+    let film = pass(&View::new(scene, spec, 5).unwrap(), &Pass::emission());
+    let n = film.value.len() as f64;
+    let mean = film.value.iter().map(|v| v[0]).sum::<f64>() / n;
+    let spread: f64 = film.value.iter().map(|v| (v[0] - mean).powi(2)).sum();
+    Part { value: mean, error: (spread / (n * (n - 1.0))).sqrt() }
+}
+
+#[test]
+fn paths_beyond_the_free_events_keep_the_mean_of_a_geometric_series() {
+    // Between two mirrors of reflectance r a path crosses the panel of luminance 1 at every second event: 1 + r^2 + r^4 + ...
+    // Of it the part r^32 lies beyond 32 events: 3 % and 72 %.
+    for r in [0.9, 0.99] {
+        let text = [
+            format!("[material.mirror]\ntype = \"mirror\"\nreflectance = {r:?}\n"),
+            panel([0.0, 0.0, 0.5], [0.0, 0.0, -1.0], 20.0, 400.0 * PI),
+            floor("below", "mirror", [0.0; 3], 10.0),
+            ceiling("above", "mirror", [0.0, 0.0, 1.0], 10.0),
+        ];
+        let spec = CameraSpec { pixels: [32, 32], ..narrow([0.0, 0.0, 0.25], [0.0, 0.0, 1.0]) };
+        let exact = 1.0 / (1.0 - r * r);
+        let seen = mean_emission(&scene(&text), &spec);
+        assert_close(&format!("mirrors of {r}"), seen, exact, 0.02);
+    }
+}
+
+#[test]
+fn an_eye_in_a_glass_block_sees_what_total_reflection_does_not_catch() {
+    // In a room of luminance 1 it sees n^2 in every direction from which light can come in: those within the critical angle of one of
+    // the three axes, whatever the number of events. Other paths never leave, and show nothing.
+    let mut text = Vec::new();
+    for axis in 0..3 {
+        for sign in [-1.0, 1.0] {
+            let at: [f64; 3] = std::array::from_fn(|k| if k == axis { sign } else { 0.0 });
+            text.push(panel(at.map(|x| 3.0 * x), at.map(|x| -x), 6.0, 36.0 * PI));
+        }
+    }
+    text.push(cuboid("block", "glass", [-1.0, -0.7, -0.5], [1.0, 0.7, 0.5]));
+    let scene = scene(&text);
+    let critical = (1.0f64 - 1.0 / 2.25).sqrt();
+    let position = DVec3::new(0.2, 0.1, -0.1);
+    let picture = |look_at: DVec3, fov_deg: f64| CameraSpec {
+        samples: 16,
+        ..CameraSpec::pinhole(position, position + look_at, DVec3::Z, fov_deg, [24, 24])
+    };
+    for (label, look_at) in [
+        ("along an axis", DVec3::new(1.0, 0.1, 0.05)),
+        ("near the critical angle", DVec3::new(critical + 0.01, 0.47, 0.47)),
+    ] {
+        assert!(look_at.normalize().x > critical + 0.005);
+        assert_close(label, mean_emission(&scene, &picture(look_at, 0.2)), 2.25, 0.02);
+    }
+    // All of these are caught. `pass` asks that none comes to the guard.
+    let caught = mean_emission(&scene, &picture(DVec3::ONE, 10.0));
+    assert_none("caught", caught);
+}
+
 #[test]
 fn a_pixel_on_an_edge_is_half_lit_by_every_filter() {
     let text =

@@ -34,23 +34,59 @@ pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
     (0.5 * (s * s + p * p), cos_t)
 }
 
-impl Dielectric {
-    /// Reflects with the Fresnel reflectance, else refracts.
+/// The two ways on from an interface, and how much goes which.
+#[derive(Debug, Clone, Copy)]
+pub struct Ways {
+    /// Part of the flux that is mirrored; the rest is refracted. 1 in total reflection, where there is no refracted way.
+    pub reflectance: f64,
+    direction: DVec3,
+    facet: DVec3,
+    normal: DVec3,
+    eta: f64,
+    cos_i: f64,
+    cos_t: f64,
+    behind: bool,
+}
+
+impl Ways {
+    /// The mirrored direction, unit, and whether a smooth normal made an exception necessary ([`Outcome::Leaves`]).
     #[inline]
-    pub fn interact<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Outcome {
+    pub fn mirrored(&self) -> (DVec3, bool) {
+        self.kept(self.direction + 2.0 * self.cos_i * self.normal, self.facet)
+    }
+
+    /// The same of the refracted direction; without meaning in total reflection.
+    #[inline]
+    pub fn refracted(&self) -> (DVec3, bool) {
+        self.kept(refract(self.direction, self.normal, self.eta, self.cos_i, self.cos_t), -self.facet)
+    }
+
+    #[inline]
+    fn kept(&self, direction: DVec3, towards: DVec3) -> (DVec3, bool) {
+        let (direction, turned) = keep_side(direction, towards);
+        (direction.normalize(), self.behind || turned)
+    }
+}
+
+impl Dielectric {
+    /// Both ways of what arrives.
+    #[inline]
+    pub fn ways(&self, at: &Incidence) -> Ways {
         let eta = if at.front { self.ior / self.ior_outside } else { self.ior_outside / self.ior };
         let (normal, behind) = working_normal(at);
         // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
         let cos_i = (-at.direction.dot(normal)).clamp(0.0, 1.0);
         let (reflectance, cos_t) = fresnel(eta, cos_i);
-        let through = !chooser.happens(reflectance);
-        let (direction, towards) = if through {
-            (refract(at.direction, normal, eta, cos_i, cos_t), -at.facet)
-        } else {
-            (at.direction + 2.0 * cos_i * normal, at.facet)
-        };
-        let (direction, mirrored) = keep_side(direction, towards);
-        Outcome::Leaves { direction: direction.normalize(), through, corrected: behind || mirrored }
+        Ways { reflectance, direction: at.direction, facet: at.facet, normal, eta, cos_i, cos_t, behind }
+    }
+
+    /// Reflects with the Fresnel reflectance, else refracts.
+    #[inline]
+    pub fn interact<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Outcome {
+        let ways = self.ways(at);
+        let through = !chooser.happens(ways.reflectance);
+        let (direction, corrected) = if through { ways.refracted() } else { ways.mirrored() };
+        Outcome::Leaves { direction, through, corrected }
     }
 }
 

@@ -1,11 +1,10 @@
 //! What an eye path carries: the part of the luminance ahead of it that reaches the eye.
 //!
-//! A mirror multiplies it by its reflectance; a dielectric chooses one of its two ways by the Fresnel reflectance and
-//! leaves it, but for the square of the indices ([`Dielectric::luminance_factor`]).
+//! A mirror multiplies it by its reflectance, glass by the part that goes the way which is followed and by the square of the
+//! indices ([`Dielectric::luminance_factor`]). Roulette ends paths that have become faint or long.
 
-use super::reflectance::{Reflectance, luminance};
-use super::throughput::Fate;
-use super::{Dielectric, Throughput};
+use super::Dielectric;
+use super::reflectance::luminance;
 use crate::sample::coordinates::Chooser;
 
 /// Weights of red, green and blue.
@@ -16,6 +15,9 @@ pub struct EyeWeight {
 
 /// Luminance of the weight below which roulette begins.
 const ROULETTE_BELOW: f64 = 1.0 / 16.0;
+
+/// Events of a path before its length is a reason to end it.
+pub const FREE_EVENTS: u32 = 32;
 
 impl EyeWeight {
     /// Of a path that begins.
@@ -51,28 +53,24 @@ impl EyeWeight {
         self.scale(1.0 / q);
         true
     }
-}
 
-impl Throughput for EyeWeight {
+    /// After so many events, whether the path goes on. Total reflection keeps light in glass without loss, often for good; of long
+    /// paths therefore fewer and fewer go on, with more: the mean stays. A path of [`FREE_EVENTS`] becomes one of n events with the
+    /// probability (FREE_EVENTS / n)^2, so that its length has a mean of 2 FREE_EVENTS however it is caught; its weight grows no
+    /// faster than n^2, so that light which becomes rarer with n in any constant proportion has a finite variance.
     #[inline]
-    fn tinted(mut self, colour: [f64; 3]) -> Self {
-        self.weight.iter_mut().zip(colour).for_each(|(w, c)| *w *= c);
-        self
+    pub fn outlast<C: Chooser>(&mut self, events: u32, chooser: &mut C) -> bool {
+        if events <= FREE_EVENTS {
+            return true;
+        }
+        let ratio = f64::from(events - 1) / f64::from(events);
+        let q = ratio * ratio;
+        if !chooser.happens(q) {
+            return false;
+        }
+        self.scale(1.0 / q);
+        true
     }
-
-    #[inline]
-    fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
-        self.attenuate(reflectance.by_channel(), chooser)
-    }
-
-    /// An eye path ends where light is scattered.
-    #[inline]
-    fn scatter<C: Chooser>(&mut self, _: [f64; 3], _: bool, _: &mut C) -> Fate {
-        Fate::Ends
-    }
-
-    #[inline]
-    fn scattered(&mut self, _: [f64; 3], _: f64) {}
 }
 
 impl Dielectric {
@@ -95,20 +93,32 @@ mod tests {
     fn mirrors_multiply_and_roulette_keeps_the_mean() {
         let mut weight = EyeWeight::ONE;
         let mut script = Script { events: vec![true, false], ..Script::default() };
-        let mirror = Reflectance::rgb([0.5, 0.25, 0.0]);
-        assert!(weight.reflect(&mirror, &mut script));
+        let mirror = [0.5, 0.25, 0.0];
+        assert!(weight.attenuate(mirror, &mut script));
         assert_eq!(weight.weight(), [0.5, 0.25, 0.0]);
         assert!(script.asked.is_empty());
         // Y = 0.2126/4 + 0.7152/16 = 0.0979, then 0.0377: below 1/16.
-        assert!(weight.reflect(&mirror, &mut script) && script.asked.is_empty());
-        assert!(weight.reflect(&mirror, &mut script));
+        assert!(weight.attenuate(mirror, &mut script) && script.asked.is_empty());
+        assert!(weight.attenuate(mirror, &mut script));
         assert_eq!(script.asked.len(), 1);
         let chance = script.asked[0];
         assert!((weight.weight()[0] * chance - 0.125).abs() < 1e-16);
         assert!((luminance(weight.weight()) - ROULETTE_BELOW).abs() < 1e-16);
-        assert!(!weight.reflect(&mirror, &mut script));
+        assert!(!weight.attenuate(mirror, &mut script));
         let mut dark = EyeWeight::ONE;
-        assert!(!dark.reflect(&Reflectance::grey(0.0), &mut Script::default()));
+        assert!(!dark.attenuate([0.0; 3], &mut Script::default()));
+    }
+
+    #[test]
+    fn a_long_path_goes_on_ever_more_rarely_and_heavier() {
+        let mut weight = EyeWeight::ONE;
+        let mut script = Script { events: vec![true; 1000 - FREE_EVENTS as usize], ..Script::default() };
+        assert!((1..=1000).all(|events| weight.outlast(events, &mut script)));
+        assert!(script.events.is_empty(), "free until {FREE_EVENTS}, then a draw for each event");
+        let chance: f64 = script.asked.iter().product();
+        assert!((chance / (32.0f64 / 1000.0).powi(2) - 1.0).abs() < 1e-12);
+        assert!((weight.weight()[1] * chance - 1.0).abs() < 1e-12);
+        assert!(!weight.outlast(1001, &mut Script { events: vec![false], ..Script::default() }));
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! Scene text: `type = "mirror"`, `reflectance` 0 to 1 (default 1), or `[r, g, b]`.
 
+use glam::DVec3;
+
 use super::{Incidence, Outcome, Reflectance, Throughput, keep_side, working_normal};
 use crate::sample::coordinates::Chooser;
 
@@ -16,10 +18,17 @@ pub fn interact<C: Chooser, T: Throughput>(
     if !carried.reflect(reflectance, chooser) {
         return Outcome::Absorbed;
     }
+    let (direction, corrected) = reflected(at);
+    Outcome::Leaves { direction, through: false, corrected }
+}
+
+/// Where a mirror sends what arrives, unit, and whether a smooth normal made an exception necessary.
+#[inline]
+pub fn reflected(at: &Incidence) -> (DVec3, bool) {
     let (normal, behind) = working_normal(at);
     let reflected = at.direction - 2.0 * at.direction.dot(normal) * normal;
-    let (direction, mirrored) = keep_side(reflected, at.facet);
-    Outcome::Leaves { direction: direction.normalize(), through: false, corrected: behind || mirrored }
+    let (direction, turned) = keep_side(reflected, at.facet);
+    (direction.normalize(), behind || turned)
 }
 
 #[cfg(test)]
@@ -27,7 +36,6 @@ mod tests {
     use super::*;
     use crate::bsdf::script::Script;
     use crate::bsdf::throughput::Grey;
-    use glam::DVec3;
 
     #[test]
     fn reflects_by_the_law_and_absorbs_the_rest() {

@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::pinhole::EyeRay;
 use super::view::View;
 use crate::bsdf::value::Leg;
-use crate::bsdf::{Bsdf, Dielectric, EyeWeight, Incidence, Outcome};
+use crate::bsdf::{Bsdf, Dielectric, EyeWeight, Incidence, mirror};
 use crate::emitter::Emitter;
 use crate::estimate::density::{Density, Gathered};
 use crate::geometry::{Hit, Side, Whereabouts};
@@ -49,6 +49,8 @@ struct Branch {
     weight: EyeWeight,
     /// Its part of the ways that glass offered.
     share: f64,
+    /// Surfaces met since the eye.
+    events: u32,
 }
 
 /// Both ways at glass are followed as long as the fainter one keeps this share, else one of them is chosen: what glass mirrors is
@@ -70,6 +72,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
             at: self.view.start,
             weight: EyeWeight::ONE,
             share: 1.0,
+            events: 0,
         });
         let mut found = [0.0; 3];
         while let Some(branch) = self.pending.pop() {
@@ -80,7 +83,10 @@ impl<'a, const C: usize> EyePath<'a, C> {
 
     fn follow<R: Chooser>(&mut self, mut path: Branch, found: &mut [f64; 3], chooser: &mut R) {
         let scene = self.view.scene;
-        for _ in 0..MAX_EVENTS {
+        while path.events < MAX_EVENTS {
+            if !path.weight.outlast(path.events, chooser) {
+                return;
+            }
             let Branch { origin, direction, weight, .. } = path;
             let hit = scene.geometry.nearest(origin, direction, &path.at, &mut 0);
             if self.looks.emission {
@@ -114,30 +120,20 @@ impl<'a, const C: usize> EyePath<'a, C> {
         path: &mut Branch,
         chooser: &mut R,
     ) -> (DVec3, bool) {
-        let at = incidence(hit, path.direction);
-        let way = |mirrored: bool| {
-            let mut decided = Decided { mirrored, reflectance: None };
-            match glass.interact(&at, &mut decided) {
-                Outcome::Leaves { direction, through, .. } => (direction, through, decided.reflectance),
-                // Glass does not absorb.
-                Outcome::Absorbed | Outcome::BelowHorizon => (path.direction, true, None),
-            }
-        };
-        let (mut onward, mut through, reflectance) = way(false);
-        if let Some(r) = reflectance {
-            let (mirrored, stays, _) = way(true);
-            if path.share * r.min(1.0 - r) >= LEAST_SHARE {
-                let mut branch = *path;
-                branch.weight.scale(r);
-                branch.share *= r;
-                branch.leave(hit, mirrored, stays);
-                self.pending.push(branch);
-                path.weight.scale(1.0 - r);
-                path.share *= 1.0 - r;
-            } else if chooser.happens(r) {
-                (onward, through) = (mirrored, stays);
-            }
+        let ways = glass.ways(&incidence(hit, path.direction));
+        let r = ways.reflectance;
+        let both = r > 0.0 && r < 1.0 && path.share * r.min(1.0 - r) >= LEAST_SHARE;
+        if both {
+            let mut branch = *path;
+            branch.weight.scale(r);
+            branch.share *= r;
+            branch.leave(hit, ways.mirrored().0, false);
+            self.pending.push(branch);
+            path.weight.scale(1.0 - r);
+            path.share *= 1.0 - r;
         }
+        let through = both || !chooser.happens(r);
+        let (onward, _) = if through { ways.refracted() } else { ways.mirrored() };
         if through {
             path.weight.scale(glass.luminance_factor(hit.front));
         }
@@ -177,32 +173,13 @@ impl Branch {
     fn leave(&mut self, hit: &Hit, onward: DVec3, through: bool) {
         self.at.leave(hit, if hit.front == through { Side::Back } else { Side::Front });
         (self.origin, self.direction) = (hit.position, onward);
+        self.events += 1;
     }
 }
 
 fn incidence(hit: &Hit, direction: DVec3) -> Incidence {
     let sign = if hit.front { 1.0 } else { -1.0 };
     Incidence { direction, facet: hit.normal * sign, smooth: hit.shading_normal * sign, front: hit.front }
-}
-
-/// Takes one way at glass and notes how likely the mirrored one is, if both are possible.
-struct Decided {
-    mirrored: bool,
-    reflectance: Option<f64>,
-}
-
-impl Chooser for Decided {
-    fn happens(&mut self, probability: f64) -> bool {
-        if probability <= 0.0 || probability >= 1.0 {
-            return probability >= 1.0;
-        }
-        self.reflectance = Some(probability);
-        self.mirrored
-    }
-
-    fn uniform(&mut self, _: Purpose) -> f64 {
-        0.0
-    }
 }
 
 /// Luminance of the emitters that a ray crosses within a distance.
@@ -260,11 +237,9 @@ fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
 /// Where an eye path goes on from anything but glass: (direction, whether through the surface); `None` where it ends.
 fn pass_on<R: Chooser>(bsdf: &Bsdf, hit: &Hit, path: &mut Branch, chooser: &mut R) -> Option<(DVec3, bool)> {
     match bsdf {
-        Bsdf::Mirror { .. } => {
-            match bsdf.interact(&incidence(hit, path.direction), chooser, &mut path.weight) {
-                Outcome::Leaves { direction, through, .. } => Some((direction, through)),
-                Outcome::Absorbed | Outcome::BelowHorizon => None,
-            }
+        Bsdf::Mirror { reflectance } => {
+            let onward = mirror::reflected(&incidence(hit, path.direction)).0;
+            path.weight.attenuate(reflectance.by_channel(), chooser).then_some((onward, false))
         }
         Bsdf::Tabulated(table) => {
             let [mirrored, straight] = table.beyond(hit.normal, path.direction, hit.front);
