@@ -13,7 +13,7 @@ use crate::estimate::bandwidth;
 use crate::estimate::density::{Choice, Density};
 use crate::estimate::footprint::Footprints;
 use crate::scene::Scene;
-use crate::scene::camera::{Bandwidth, CameraSpec, FEWEST_NEIGHBOURS};
+use crate::scene::camera::{Bandwidth, CameraSpec};
 use crate::tally::photon_map::PhotonMap;
 
 use super::super::plan::Plan;
@@ -96,7 +96,7 @@ impl<'a, const C: usize> Eye<'a, C> {
             Bandwidth::Automatic if map.photons().is_empty() => return None,
             Bandwidth::Automatic => {
                 let found = bandwidth::choose(&self.footprints, map, self.spec.kernel, replicates, part);
-                bandwidth = Bandwidth::AtLeast { radius_m: found.radius_m, neighbours: FEWEST_NEIGHBOURS };
+                bandwidth = found.bandwidth();
                 chosen.radius_m = Some(found.radius_m);
                 chosen.neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
             }
