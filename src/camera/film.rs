@@ -132,6 +132,11 @@ impl<const C: usize> PixelSums<C> {
         of_photons + self.sparse_square + of_eye
     }
 
+    /// What the bandwidths say of the bias.
+    fn bias(&self) -> f64 {
+        self.difference.abs() * BIAS_PER_DIFFERENCE + self.further_bias
+    }
+
     fn scale(&mut self, factor: f64) {
         self.value = self.value.map(|v| v * factor);
         self.by_set = self.by_set.map(|v| (f64::from(v) * factor) as f32);
@@ -205,6 +210,28 @@ impl<const C: usize> Sums<C> {
         &self.tiles[tile * TILE_PIXELS + (row % TILE * TILE + column % TILE) as usize]
     }
 
+    /// Estimated size of the bias of a pixel's luminance: what its two bandwidths say, and no less than what those of the
+    /// 3 x 3 pixels about it say together, as a part of their luminance. Where the difference of the bandwidths changes its sign, a
+    /// pixel's own says nothing.
+    fn bias(&self, column: u32, row: u32) -> f64 {
+        let about = |at: u32, of: u32| at.saturating_sub(1)..of.min(at + 2);
+        let (mut biases, mut luminances) = (0.0, 0.0);
+        for row in about(row, self.pixels[1]) {
+            for column in about(column, self.pixels[0]) {
+                let sums = self.at(column, row);
+                // What an interrupt left unseen says nothing.
+                if sums.bias().is_finite() {
+                    biases += sums.bias();
+                    luminances += luminance_of(&sums.value);
+                }
+            }
+        }
+        let own = self.at(column, row);
+        let of_all = luminance_of(&own.value) * (biases / luminances);
+        // Not max(): an unseen pixel's own is NaN and stays so.
+        if of_all > own.bias() { of_all } else { own.bias() }
+    }
+
     /// The picture of all passes so far.
     ///
     /// Standard error^2 = spread of the replicates' sums + spread of the sets of samples: that of the photons for these samples,
@@ -223,7 +250,7 @@ impl<const C: usize> Sums<C> {
                 let sums = self.at(column, row);
                 film.value.push(sums.value);
                 film.standard_error.push(sums.variance(self.replicates, self.sets).sqrt());
-                film.bias.push(sums.difference.abs() * BIAS_PER_DIFFERENCE + sums.further_bias);
+                film.bias.push(self.bias(column, row));
             }
         }
         film
@@ -243,6 +270,31 @@ mod tests {
             assert_eq!(error.kind(), Kind::Limit);
         }
         assert!(Sums::<1>::new([8192, 8192]).unwrap_err().to_string().contains("MiB"));
+    }
+
+    #[test]
+    fn a_pixel_s_bias_is_no_less_than_its_neighbours_say() {
+        let mut sums = Sums::<1>::new([3, 2]).unwrap();
+        let pixels = [[(10.0, 1.0), (20.0, -2.0), (40.0, 0.0)], [(10.0, 0.5), (0.0, 0.0), (1e6, 0.0)]];
+        for (row, columns) in pixels.into_iter().enumerate() {
+            for (column, (value, difference)) in columns.into_iter().enumerate() {
+                let pixel = &mut sums.tiles[row * TILE as usize + column];
+                (pixel.value, pixel.difference) = ([value], difference);
+            }
+        }
+        sums.tiles[TILE as usize + 1].further_bias = 0.25;
+        let bias = sums.finish().bias;
+        let d = BIAS_PER_DIFFERENCE;
+        // At the left all six but the right column count; at the right all but the left one.
+        let left = (3.5 * d + 0.25) / 40.0;
+        assert!((bias[0] - d).abs() < 1e-15 && (bias[3] - 10.0 * left).abs() < 1e-12, "{bias:?}");
+        assert!((bias[1] - 2.0 * d).abs() < 1e-15, "its own is more than what a lamp beside it dilutes");
+        let right = (2.0 * d + 0.25) / (60.0 + 1e6);
+        assert!((bias[2] - 40.0 * right).abs() < 1e-15 && (bias[5] - 1e6 * right).abs() < 1e-9, "{bias:?}");
+        assert_eq!(bias[4], 0.25);
+        sums.tiles[0] = PixelSums::UNSEEN;
+        let unseen = sums.finish().bias;
+        assert!(unseen[0].is_nan() && unseen[1..].iter().all(|b| b.is_finite()));
     }
 
     #[test]
