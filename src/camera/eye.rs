@@ -55,7 +55,7 @@ struct Branch {
 
 /// Both ways at glass are followed as long as the fainter one keeps this share, else one of them is chosen: what glass mirrors is
 /// faint but often of something bright, and would be noise. At most as many paths as the share goes into 1 come of one.
-const LEAST_SHARE: f64 = 1.0 / 64.0;
+const LEAST_SHARE: f64 = 1.0 / 1024.0;
 
 impl<'a, const C: usize> EyePath<'a, C> {
     /// Nothing looked at yet; photons of so many replicates are told apart.

@@ -144,7 +144,7 @@ impl<'m, const C: usize> Density<'m, C> {
 
     /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen and 0 for other, times
     /// `weight`: photons of the other side do not count as neighbours. A pixel's samples lie close together against a wide radius:
-    /// what was gathered for one, since `into` was last cleared, serves those within a 16th of the radius on the same side of the
+    /// what was gathered for one, since `into` was last cleared, serves those within an eighth of the radius on the same side of the
     /// same surface.
     pub fn gather_evenly(&self, at: &Hit, weight: [f64; C], into: &mut Gathered<C>) {
         let evenly = |_, _| [1.0; C];

@@ -104,11 +104,11 @@ impl<const C: usize> Gathered<C> {
 }
 
 /// How far, in radii, a place may be from one where light was gathered evenly to take the same: its kernels are the same but for a
-/// 16th of their radius.
-const SAME_PLACE: f64 = 1.0 / 16.0;
+/// eighth of their radius.
+const SAME_PLACE: f64 = 1.0 / 8.0;
 
 /// Places of one pixel that are remembered of each density.
-const MOST_PLACES: usize = 8;
+const MOST_PLACES: usize = 32;
 
 /// Places where light was gathered evenly, with what was found there. Those in use come first; the others are kept for their room.
 #[derive(Debug, Clone, PartialEq)]

@@ -48,12 +48,7 @@ impl<const C: usize, F: FnMut(DVec3, bool) -> [f64; C]> Point<'_, C, F> {
 
     /// Whether there are so many photons within the radius, m.
     pub fn holds_at_least(&self, radius_m: f64, least: usize) -> bool {
-        let mut number = 0;
-        self.map.within(self.at.position, radius_m, |photon, _| {
-            // Whether the surface holds it is asked no more often than needed.
-            number += usize::from(number < least && self.holds(photon));
-        });
-        number >= least
+        self.map.has_within(self.at.position, radius_m, least, |photon| self.holds(photon))
     }
 
     /// 1 / (pi r^2) over what of the kernel lies on the surface, 1/m2, for two radii.

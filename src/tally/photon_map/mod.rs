@@ -81,11 +81,32 @@ impl<const C: usize> PhotonMap<C> {
     /// Calls `take(photon, squared distance)` for every photon nearer than `radius_m` to `centre`, in the map's order.
     #[inline]
     pub fn within(&self, centre: DVec3, radius_m: f64, mut take: impl FnMut(&Photon<C>, f64)) {
-        self.visit(centre, radius_m, |_, photon, d2| take(photon, d2));
+        self.visit(centre, radius_m, |_, photon, d2| {
+            take(photon, d2);
+            true
+        });
     }
 
+    /// Whether `accept` takes so many photons nearer than `radius_m` to `centre`. No more are looked at than that takes.
     #[inline]
-    fn visit(&self, centre: DVec3, radius_m: f64, mut take: impl FnMut(usize, &Photon<C>, f64)) {
+    pub fn has_within(
+        &self,
+        centre: DVec3,
+        radius_m: f64,
+        least: usize,
+        mut accept: impl FnMut(&Photon<C>) -> bool,
+    ) -> bool {
+        let mut number = 0;
+        self.visit(centre, radius_m, |_, photon, _| {
+            number += usize::from(accept(photon));
+            number < least
+        });
+        number >= least
+    }
+
+    /// The same until `take` says that it has enough.
+    #[inline]
+    fn visit(&self, centre: DVec3, radius_m: f64, mut take: impl FnMut(usize, &Photon<C>, f64) -> bool) {
         let r2 = radius_m * radius_m;
         let order = self.order;
         let (low, high) = self.frame.cells_about(centre, radius_m);
@@ -120,8 +141,8 @@ impl<const C: usize> PhotonMap<C> {
                         break;
                     }
                     let d2 = (self.frame.position(photon.cell) - centre).length_squared();
-                    if d2 < r2 {
-                        take(at, photon, d2);
+                    if d2 < r2 && !take(at, photon, d2) {
+                        return;
                     }
                     at += 1;
                 }
@@ -162,6 +183,7 @@ impl<const C: usize> PhotonMap<C> {
                 if accept(photon) {
                     found.push((d2, place as u32));
                 }
+                true
             });
             if found.len() >= k || radius > farthest {
                 break;
