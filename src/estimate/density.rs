@@ -153,7 +153,10 @@ impl<'m, const C: usize> Density<'m, C> {
         if let Some(found) = places.near(density, at) {
             into.add_weighted(found, weight);
         } else if let Some(found) = places.remember(density, at, into.by_replicate.len()) {
+            // One room for all places: what a search needs is many times what it finds.
+            std::mem::swap(&mut into.room, &mut found.room);
             self.gather_of(Some(at.front), at, [1.0; C], evenly, found);
+            std::mem::swap(&mut into.room, &mut found.room);
             into.add_weighted(found, weight);
         } else {
             self.gather_of(Some(at.front), at, weight, evenly, into);
