@@ -209,7 +209,7 @@ impl<'s, const C: usize> Splat<'s, C> {
 }
 
 /// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it, whose spread says
-/// nothing: that of (photons + 1), in units of the photon that [`of_one_lumen`] has in mind. 0 where there are enough.
+/// nothing: that of (photons + 1), a photon being what one would bring that arrives where the pixel's middle looks. 0 where there are enough.
 pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64) -> f64 {
     let one = photon_lm * of_one_lumen(view, pixel);
     let photons = luminance_cd_m2 / one;
