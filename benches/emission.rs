@@ -7,8 +7,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::files::lm63;
 use caustix::math::solve::Solver;
-use caustix::photometry::{PhotometricType, Photometry, Web, lm63};
+use caustix::photometry::{PhotometricType, Photometry, Web};
 use caustix::sample::cell::{Cell, Row};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sequence::independent::IndependentPoints;

@@ -4,12 +4,12 @@
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::hint::black_box;
 
-use caustix::estimate::density::{Choice, Density, Gathered};
 use caustix::geometry::{Geometry, Hit, Rectangle, Shape, Surface, Whereabouts};
+use caustix::picture::gather::density::{Choice, Density, Gathered};
+use caustix::picture::photon_map::record::{FRONT, pack};
+use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
 use caustix::sequence::hash::mix64;
-use caustix::tally::photon_map::record::{FRONT, pack};
-use caustix::tally::photon_map::{Frame, Photon, PhotonMap};
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
 

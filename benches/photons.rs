@@ -4,8 +4,10 @@
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::Description;
 use caustix::run::{Algorithm, Plan, Settings, trace};
-use caustix::scene::{Scene, build::build, description::Description};
+use caustix::scene::Scene;
 use caustix::sequence::Sequence;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 

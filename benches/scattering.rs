@@ -9,14 +9,14 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use caustix::bsdf::tabulated::{Energy, Options};
-use caustix::bsdf::{Bsdf, Grey, Incidence, Outcome, Reflectance, Rgb, Tabulated, Throughput as Carried};
 use caustix::math::solve::Solver;
 use caustix::sample::coordinates::{Coordinates, Purpose};
 use caustix::sample::grid::Grid;
 use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::to_unit_f64;
+use caustix::surface::tabulated::{Energy, Options};
+use caustix::surface::{Bsdf, Grey, Incidence, Outcome, Reflectance, Rgb, Tabulated, Throughput as Carried};
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };
@@ -176,7 +176,7 @@ fn building(criterion: &mut Criterion) {
 fn measured(group: &mut BenchmarkGroup<'_, WallTime>, path: &Path) {
     let options = Options { energy: Energy::Scale, ..Options::default() };
     let both = || {
-        let table = caustix::scattering::read(path).unwrap();
+        let table = caustix::files::bsdf::read(path).unwrap();
         let values: usize = table.lobes.iter().map(|lobe| lobe.values.len()).sum();
         (Tabulated::new(&table, &options).unwrap().0, values)
     };

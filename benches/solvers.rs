@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-use caustix::photometry::lm63;
+use caustix::files::lm63;
 use caustix::sequence::hash::mix64;
 use caustix::sequence::to_unit_f64;
 

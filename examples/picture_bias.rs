@@ -11,10 +11,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use caustix::error::Diagnostic;
-use caustix::image::canvas::{Anchor, Colour, TextStyle};
-use caustix::image::drawing::{Drawing, Pen, Shape};
+use caustix::lab::study::picture_bias::{Row, mapped, rate, splatted};
+use caustix::plot::canvas::{Anchor, Colour, TextStyle};
+use caustix::plot::drawing::{Drawing, Pen, Shape};
 use caustix::scene::camera::Bandwidth;
-use caustix::study::picture_bias::{Row, mapped, rate, splatted};
 
 /// 2^m photons of the reference, its replicates, its seed.
 const REFERENCE: (u32, u32, u64) = (24, 16, 1000);

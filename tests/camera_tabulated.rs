@@ -9,8 +9,6 @@ mod tabulated_support;
 use std::f64::consts::PI;
 
 use camera_support::{assert_close, narrow, pixel};
-use caustix::bsdf::tabulated::Options;
-use caustix::bsdf::{Bsdf, Grey, Incidence, Outcome, Reference, Tabulated};
 use caustix::emitter::{Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Surface};
 use caustix::sample::coordinates::Coordinates;
@@ -18,6 +16,8 @@ use caustix::scattering::{Frame, Quantity, ScatterTable};
 use caustix::scene::camera::CameraSpec;
 use caustix::scene::{Scene, SceneParts};
 use caustix::sequence::owen::OwenPoints;
+use caustix::surface::tabulated::Options;
+use caustix::surface::{Bsdf, Grey, Incidence, Outcome, Reference, Tabulated};
 use glam::DVec3;
 use tabulated_support::{incidence, lobe, steps};
 

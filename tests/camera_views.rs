@@ -8,10 +8,10 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use camera_support::*;
-use caustix::camera::{Film, Pass, Sums, View, render};
 use caustix::error::Kind;
-use caustix::estimate::density::Density;
 use caustix::geometry::Whereabouts;
+use caustix::picture::camera::{Film, Pass, Sums, View, render};
+use caustix::picture::gather::density::Density;
 use caustix::scene::Scene;
 use caustix::scene::camera::{CameraSpec, Filter};
 use caustix::sequence::Points;

@@ -3,10 +3,11 @@
 
 mod support;
 
-use caustix::certificate::sampler::{made_from, sample};
-use caustix::certificate::{Certificate, Density, Draw, Judge, PointKind, REPLICATES, TestName};
+use caustix::files::lm63;
+use caustix::lab::certificate::sampler::{made_from, sample};
+use caustix::lab::certificate::{Certificate, Density, Draw, Judge, PointKind, REPLICATES, TestName};
 use caustix::math::solve::Solver;
-use caustix::photometry::{Photometry, lm63};
+use caustix::photometry::Photometry;
 use caustix::run::{Algorithm, Variant};
 use caustix::sample::choose::Reusable;
 use caustix::sample::discrete::Discrete;

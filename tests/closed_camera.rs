@@ -11,13 +11,13 @@ mod picture_support;
 
 use std::sync::atomic::AtomicBool;
 
-use caustix::camera::Film;
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml::read;
+use caustix::picture::camera::Film;
+use caustix::picture::{AnyPicture, PictureSummary, trace_picture};
 use caustix::run::Outcome;
-use caustix::run::picture::{AnyPicture, PictureSummary, trace_picture};
-use caustix::scene::build::build;
 use caustix::scene::camera::{CameraSpec, Method};
-use caustix::scene::description::Description;
-use caustix::scene::file::read;
 use closed_support::camera_scene_files;
 use closed_support::scaled::scaled;
 use picture_support::{plan, unwatched};

@@ -6,8 +6,8 @@
 
 mod closed_support;
 
+use caustix::files::lm63;
 use caustix::photometry::Photometry;
-use caustix::photometry::lm63;
 use caustix::photometry::web::PhotometricType;
 use caustix::sequence::Sequence;
 use closed_support::judge::{assert_cells, assert_total};

@@ -8,15 +8,15 @@ mod closed_support;
 
 use std::path::PathBuf;
 
-use caustix::bsdf::Grey;
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml::read;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scene::Scene;
-use caustix::scene::build::build;
-use caustix::scene::description::Description;
-use caustix::scene::file::read;
 use caustix::scene::receiver::Cells;
 use caustix::sequence::Sequence;
 use caustix::sequence::owen::OwenPoints;
+use caustix::surface::Grey;
 use caustix::transport::census::Exceptions;
 use caustix::transport::{Arrival, End, Sink, walk};
 use closed_support::{run, scene_files};

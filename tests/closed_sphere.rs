@@ -9,12 +9,12 @@ mod closed_support;
 
 use std::f64::consts::PI;
 
-use caustix::bsdf::Grey;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scene::Scene;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::{Points, Sequence};
+use caustix::surface::Grey;
 use caustix::transport::census::Exceptions;
 use caustix::transport::{Arrival, End, Sink, walk};
 use closed_support::judge::{SIGNIFICANCE, assert_cells, assert_total, normal_p, student_p};

@@ -1,18 +1,18 @@
 //! What a study says and how it is shown, from made-up studies whose laws, ratios and limits are known.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::image::canvas::Anchor;
-use caustix::image::drawing::Shape;
-use caustix::image::font;
+use caustix::lab::study::fit::Uncertainty;
+use caustix::lab::study::norms::Errors;
+use caustix::lab::study::results::{Account, Reference, Run, Study, VariantResult};
+use caustix::lab::study::table::Table;
+use caustix::plot::canvas::Anchor;
+use caustix::plot::drawing::Shape;
+use caustix::plot::font;
 use caustix::report::compare::csv::{HEADER, csv};
 use caustix::report::compare::markdown::markdown;
 use caustix::report::compare::plot::drawing;
 use caustix::report::compare::text::{WIDTH, text};
 use caustix::report::compare::write_files;
-use caustix::study::fit::Uncertainty;
-use caustix::study::norms::Errors;
-use caustix::study::results::{Account, Reference, Run, Study, VariantResult};
-use caustix::study::table::Table;
 
 /// A number of [0, 1) for an index (SplitMix64's finaliser).
 fn uniform(index: u64) -> f64 {

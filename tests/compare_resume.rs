@@ -2,7 +2,7 @@
 //! uses no part that is damaged or of another study.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::report::parts::{Found, Parts, from_bytes, to_bytes};
+use caustix::files::parts::{Found, Parts, from_bytes, to_bytes};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -8,16 +8,16 @@
 
 mod support;
 
-use caustix::bsdf::{Bsdf, Dielectric, Grey, Reflectance};
 use caustix::emitter::{Emission, Emitter, Emitters, Isotropic, Photometric};
+use caustix::files::lm63;
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
-use caustix::photometry::lm63;
 use caustix::sample::coordinates::{Chooser, Coordinates, Purpose};
 use caustix::sample::method::Sampling;
 use caustix::scene::{Scene, SceneParts};
 use caustix::sequence::Points;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
+use caustix::surface::{Bsdf, Dielectric, Grey, Reflectance};
 use caustix::transport::census::{Exceptions, LONGEST_DIMENSION};
 use caustix::transport::parallel::{How, trace_range};
 use caustix::transport::{Arrival, End, Sink, walk};

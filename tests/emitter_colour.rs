@@ -4,16 +4,16 @@
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use caustix::bsdf::{Grey, Rgb, luminance};
 use caustix::error::{Diagnostic, Kind};
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::parse;
+use caustix::files::scene_toml::source::Base;
 use caustix::run::{Estimate, Plan, Settings, trace};
 use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
-use caustix::scene::build::build;
-use caustix::scene::file::parse;
 use caustix::scene::requires::requirements;
-use caustix::scene::source::Base;
 use caustix::sequence::owen::OwenPoints;
+use caustix::surface::{Grey, Rgb, luminance};
 use caustix::transport::parallel::{How, trace_range};
 use caustix::transport::{Arrival, Sink};
 

@@ -6,7 +6,8 @@ mod geometry_support;
 use std::path::Path;
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::geometry::{Mesh, ObjOptions, Smoothing, Transform, parse_obj, read_obj};
+use caustix::files::obj::{ObjOptions, parse_obj, read_obj};
+use caustix::geometry::{Mesh, Smoothing, Transform};
 use geometry_support::Random;
 use glam::DVec3;
 

@@ -1,11 +1,11 @@
 //! False-colour pictures against known values, and maps at the edge of what is a map.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::image::canvas::{Canvas, Colour};
-use caustix::image::colour_map::{colour, no_value};
-use caustix::image::false_colour::{FalseColour, Quantity, display_size};
-use caustix::image::isolux::isolux;
-use caustix::image::scale::{Axis, Scale};
+use caustix::plot::canvas::{Canvas, Colour};
+use caustix::plot::colour_map::{colour, no_value};
+use caustix::plot::false_colour::{FalseColour, Quantity, display_size};
+use caustix::plot::isolux::isolux;
+use caustix::plot::scale::{Axis, Scale};
 
 fn picture(values: &[f64], width: usize, height: usize, scale: Scale) -> FalseColour<'_> {
     FalseColour {

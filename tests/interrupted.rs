@@ -3,12 +3,12 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use caustix::bsdf::Bsdf;
 use caustix::emitter::{Emitter, Isotropic};
 use caustix::error::Kind;
 use caustix::geometry::{Rectangle, Shape, Surface};
 use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use caustix::scene::{Scene, SceneParts};
+use caustix::surface::Bsdf;
 use glam::DVec3;
 
 /// A lamp above a floor so wide that half of its light meets it, the first half of the first coordinate or the last.

@@ -7,8 +7,8 @@ mod closed_support;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use caustix::scene::build::build;
-use caustix::scene::description::Description;
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::Description;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
 use closed_support::run;

@@ -7,10 +7,10 @@ mod picture_support;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use caustix::bsdf::{Bsdf, Dielectric, Reflectance};
-use caustix::run::picture::{PictureSummary, trace_picture};
+use caustix::picture::{PictureSummary, trace_picture};
 use caustix::scene::Scene;
 use caustix::scene::camera::{Bandwidth, CameraSpec};
+use caustix::surface::{Bsdf, Dielectric, Reflectance};
 use glam::DVec3;
 use picture_support::{beam, grey, on_threads, panel, plan, rectangle, scene, sphere, unwatched};
 

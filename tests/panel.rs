@@ -10,11 +10,11 @@ mod closed_support;
 
 use std::f64::consts::PI;
 
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::parse;
+use caustix::files::scene_toml::source::Base;
 use caustix::scene::Scene;
-use caustix::scene::build::build;
-use caustix::scene::file::parse;
 use caustix::scene::requires::requirements;
-use caustix::scene::source::Base;
 use caustix::sequence::Sequence;
 use closed_support::judge::{assert_cells, assert_total};
 use closed_support::quadrature::cell_means;

@@ -8,10 +8,13 @@
 mod support;
 
 use caustix::emitter::{Emitter, Emitters, Photometric};
-use caustix::photometry::{PhotometricType, Photometry, lm63};
+use caustix::files::lm63;
+use caustix::files::scene_toml;
+use caustix::files::scene_toml::build;
+use caustix::files::scene_toml::source::Base;
+use caustix::photometry::{PhotometricType, Photometry};
 use caustix::sample::coordinates::Coordinates;
-use caustix::scene::source::Base;
-use caustix::scene::{Scene, build, file};
+use caustix::scene::Scene;
 use caustix::sequence::independent::IndependentPoints;
 use glam::DVec3;
 use std::path::Path;
@@ -235,7 +238,7 @@ fn scene(name: &str, frame: &str) -> Scene {
          [[receiver]]\nsurface = \"plate\"\ncells = [4, 4]\n"
     );
     let base = Base::Directory(Path::new(env!("CARGO_MANIFEST_DIR")).join("ies"));
-    build::build(&file::parse(&text, "frame.toml", base).unwrap()).unwrap()
+    build::build(&scene_toml::parse(&text, "frame.toml", base).unwrap()).unwrap()
 }
 
 fn lamp(scene: &Scene) -> &Photometric {

@@ -1,7 +1,8 @@
 //! Damaged photometric files: a result or a diagnostic, never a panic, a hang or memory beyond the file's size.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::photometry::{Summary, lm63};
+use caustix::files::lm63;
+use caustix::photometry::Summary;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 

@@ -1,7 +1,8 @@
 //! The project's own photometric files: what the formulas give is what is on disk, and what the README states.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::photometry::{PhotometricType, Summary, lm63};
+use caustix::files::lm63;
+use caustix::photometry::{PhotometricType, Summary};
 use std::path::{Path, PathBuf};
 
 #[allow(dead_code)]

@@ -4,7 +4,8 @@
 //! what each should give and who said so.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::photometry::{Photometry, Summary, flux, lm63};
+use caustix::files::lm63;
+use caustix::photometry::{Photometry, Summary, flux};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

@@ -5,19 +5,19 @@ mod support;
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
-use caustix::estimate::bandwidth::choose;
-use caustix::estimate::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
-use caustix::estimate::footprint::Footprints;
 use caustix::geometry::{
     Geometry, Hit, Mesh, MeshParts, Paraboloid, Rectangle, Shape, Smoothing, Sphere, Surface, SurfaceId,
     Whereabouts, box_mesh,
 };
+use caustix::picture::gather::bandwidth::choose;
+use caustix::picture::gather::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
+use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::photon_map::record::{FRONT, pack};
+use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
 use caustix::sequence::Points;
 use caustix::sequence::hash::mix64;
 use caustix::sequence::owen::OwenPoints;
-use caustix::tally::photon_map::record::{FRONT, pack};
-use caustix::tally::photon_map::{Frame, Photon, PhotonMap};
 use glam::DVec3;
 use support::quadrature::Gauss;
 use support::statistics::{sidak, z_test};

@@ -3,14 +3,14 @@
 
 use std::f64::consts::PI;
 
-use caustix::estimate::bandwidth::choose;
-use caustix::estimate::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
-use caustix::estimate::footprint::Footprints;
 use caustix::geometry::{Geometry, Hit, Rectangle, Shape, Surface, Whereabouts};
+use caustix::picture::gather::bandwidth::choose;
+use caustix::picture::gather::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
+use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::photon_map::record::{FRONT, pack};
+use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
 use caustix::sequence::hash::mix64;
-use caustix::tally::photon_map::record::{FRONT, pack};
-use caustix::tally::photon_map::{Frame, Photon, PhotonMap};
 use glam::DVec3;
 
 /// Numbers in [0, 1) without pattern.

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use caustix::error::Kind;
+use caustix::picture::photon_map::record::{FRONT, SCATTERED, pack, unpack};
+use caustix::picture::photon_map::{Frame, Photon, PhotonMap, SavedMap, file};
 use caustix::sequence::hash::mix64;
-use caustix::tally::photon_map::record::{FRONT, SCATTERED, pack, unpack};
-use caustix::tally::photon_map::{Frame, Photon, PhotonMap, SavedMap, file};
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 
@@ -205,9 +205,9 @@ fn directions_survive_packing_to_within_the_stated_angle() {
         check(-d);
     }
     println!("worst error of {n} directions: {worst:.3e} rad");
-    assert!(worst < caustix::tally::photon_map::record::PACKING_ERROR_RAD);
+    assert!(worst < caustix::picture::photon_map::record::PACKING_ERROR_RAD);
     // The bound is no idle one.
-    assert!(worst > 0.8 * caustix::tally::photon_map::record::PACKING_ERROR_RAD);
+    assert!(worst > 0.8 * caustix::picture::photon_map::record::PACKING_ERROR_RAD);
 }
 
 #[test]

@@ -4,8 +4,8 @@
 
 mod picture_bias_support;
 
+use caustix::lab::study::picture_bias::{Reference, Row, mapped, rate, splatted};
 use caustix::scene::camera::{Bandwidth, CameraSpec};
-use caustix::study::picture_bias::{Reference, Row, mapped, rate, splatted};
 use picture_bias_support::{View, ball, pane, plan};
 
 const REPLICATES: u32 = 8;

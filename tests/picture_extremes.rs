@@ -6,13 +6,13 @@ mod picture_support;
 
 use std::sync::atomic::AtomicBool;
 
-use caustix::bsdf::{Bsdf, Dielectric, Reflectance};
-use caustix::camera::Film;
 use caustix::error::Kind;
-use caustix::image::exr::{OwnedData, read_maps};
-use caustix::run::picture::{AnyPicture, Picture, trace_picture};
+use caustix::files::exr::{OwnedData, read_maps};
+use caustix::picture::camera::Film;
+use caustix::picture::{AnyPicture, Picture, trace_picture};
 use caustix::scene::Scene;
 use caustix::scene::camera::{Bandwidth, CameraSpec, Method};
+use caustix::surface::{Bsdf, Dielectric, Reflectance};
 use cli_support::Stranger;
 use glam::DVec3;
 use picture_support::{beam, grey, plan, rectangle, scene, sphere, unwatched};

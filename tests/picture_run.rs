@@ -5,17 +5,17 @@ mod picture_support;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use caustix::bsdf::{Bsdf, Dielectric, Reflectance};
-use caustix::camera::Film;
 use caustix::error::Kind;
-use caustix::run::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
+use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
+use caustix::picture::camera::Film;
+use caustix::picture::photon_map::SavedMap;
+use caustix::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
 use caustix::run::{Outcome, Plan, StoppedBy, trace};
 use caustix::scene::Identity;
 use caustix::scene::camera::{Bandwidth, CameraSpec};
-use caustix::scene::description::{ReceiverEvents, ReceiverSide};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneParts};
-use caustix::tally::photon_map::SavedMap;
+use caustix::surface::{Bsdf, Dielectric, Reflectance};
 use glam::DVec3;
 use picture_support::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
 

@@ -9,16 +9,16 @@ mod closed_support;
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-use caustix::bsdf::Reflectance;
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::MaterialKind;
+use caustix::files::scene_toml::read;
 use caustix::geometry::Shape;
+use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure, run as study};
 use caustix::report::room as report;
 use caustix::scene::Scene;
-use caustix::scene::build::build;
-use caustix::scene::description::MaterialKind;
-use caustix::scene::file::read;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
-use caustix::study::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure, run as study};
+use caustix::surface::Reflectance;
 use closed_support::judge::{SIGNIFICANCE, assert_cells, assert_total, sidak, student_p};
 use closed_support::{describe, project, run, scene};
 

@@ -9,8 +9,9 @@
 mod support;
 
 use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::files::lm63;
 use caustix::math::solve::Solver;
-use caustix::photometry::{PhotometricType, Photometry, Web, lm63};
+use caustix::photometry::{PhotometricType, Photometry, Web};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::{Rejection, Sampling};
 use caustix::sequence::independent::IndependentPoints;

@@ -1,7 +1,7 @@
 //! Damaged scattering files: a table or a diagnostic, never a panic, a hang or memory beyond the caps.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::scattering::{self, integral::slice_albedo, reciprocity};
+use caustix::scattering::{integral::slice_albedo, reciprocity};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -28,7 +28,7 @@ impl Generator {
 
 /// Reads bytes and, if they are a table, asks what a program would ask of it; true if they were.
 fn survives(bytes: &[u8], name: &str, ask: bool) -> bool {
-    match scattering::parse(bytes, name) {
+    match caustix::files::bsdf::parse(bytes, name) {
         Ok(table) => {
             for lobe in table.lobes.iter().filter(|_| ask) {
                 assert!(lobe.values.iter().all(|v| v.is_finite() && *v >= 0.0));
@@ -79,7 +79,7 @@ fn every_truncation_is_a_table_or_a_diagnostic() {
         assert!(
             survives(text.as_bytes(), name, true),
             "{name}: {:?}",
-            scattering::parse(text.as_bytes(), name)
+            caustix::files::bsdf::parse(text.as_bytes(), name)
         );
         let read = (0..text.len()).filter(|n| survives(&text.as_bytes()[..*n], name, true)).count();
         println!("{name}: {} truncations, {read} read", text.len());
@@ -192,7 +192,7 @@ fn counts_that_ask_for_memory_are_refused_at_once() {
             list(n, 90.0 / n as f64),
             list(n, 360.0 / n as f64)
         );
-        let error = scattering::parse(text.as_bytes(), "big.scatter").unwrap_err();
+        let error = caustix::files::bsdf::parse(text.as_bytes(), "big.scatter").unwrap_err();
         let kind = if n == 20_000 { caustix::error::Kind::Limit } else { caustix::error::Kind::Missing };
         assert_eq!(error.kind(), kind, "{error}");
     }

@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use caustix::error::Kind;
+use caustix::files::bsdf::{Format, merl, parse};
 use caustix::scattering::integral::slice_albedo;
 use caustix::scattering::value::value;
-use caustix::scattering::{Format, Frame, LobeSide, Quantity, merl, parse};
+use caustix::scattering::{Frame, LobeSide, Quantity};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -397,7 +398,7 @@ fn the_content_decides_the_format() {
     ] {
         assert_eq!(Format::of(bytes, name).map_err(|e| e.kind()), expected, "{name}");
     }
-    assert_eq!(caustix::scattering::read("no/such.bsdf").unwrap_err().kind(), Kind::Io);
+    assert_eq!(caustix::files::bsdf::read("no/such.bsdf").unwrap_err().kind(), Kind::Io);
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! The material made of a table against the table read on its own: two ways to the same function.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::bsdf::tabulated::{Options, Tabulated};
+use caustix::scattering::Quantity;
 use caustix::scattering::integral::slice_albedo;
 use caustix::scattering::value::value;
-use caustix::scattering::{self, Quantity};
+use caustix::surface::tabulated::{Options, Tabulated};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -38,7 +38,7 @@ fn files() -> Vec<PathBuf> {
 #[test]
 fn a_material_scatters_as_its_table_says() {
     for path in files() {
-        let table = scattering::read(&path).unwrap();
+        let table = caustix::files::bsdf::read(&path).unwrap();
         let (material, _) = Tabulated::new(&table, &Options::default()).unwrap();
         let (mut compared, mut worst) = (0, 0.0f64);
         for front in [true, false] {

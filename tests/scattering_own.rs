@@ -4,7 +4,7 @@
 use caustix::scattering::integral::slice_albedo;
 use caustix::scattering::reciprocity::{self, reciprocity};
 use caustix::scattering::value::value;
-use caustix::scattering::{self, Frame, LobeData, LobeSide, Quantity, ScatterTable};
+use caustix::scattering::{Frame, LobeData, LobeSide, Quantity, ScatterTable};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ fn folder() -> PathBuf {
 }
 
 fn read(file: &str) -> ScatterTable {
-    scattering::read(folder().join(file)).unwrap()
+    caustix::files::bsdf::read(folder().join(file)).unwrap()
 }
 
 #[test]

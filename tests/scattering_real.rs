@@ -4,7 +4,7 @@
 use caustix::error::Kind;
 use caustix::scattering::integral::{node_cosine, slice_albedo};
 use caustix::scattering::value::value;
-use caustix::scattering::{self, Frame, Lobe, LobeSide, Quantity};
+use caustix::scattering::{Frame, Lobe, LobeSide, Quantity};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -70,7 +70,7 @@ fn declared_totals_are_the_sums_they_were_made_by() {
         ("IMX455", 360.0),
     ];
     for (name, last_azimuth) in files {
-        let table = scattering::read(folder.join("zemax").join(format!("{name}.bsdf"))).unwrap();
+        let table = caustix::files::bsdf::read(folder.join("zemax").join(format!("{name}.bsdf"))).unwrap();
         let lobe = &table.lobes[0];
         for phi_i in 0..lobe.phi_i_deg.len() {
             for (t, theta_i) in lobe.theta_i_deg.iter().enumerate() {
@@ -97,7 +97,7 @@ fn declared_totals_are_the_sums_they_were_made_by() {
 #[test]
 fn the_total_of_an_in_plane_file_is_an_integral_in_the_plane() {
     let Some(folder) = real_folder() else { return };
-    let table = scattering::read(folder.join("zemax/aeroglaze_legacy.bsdf")).unwrap();
+    let table = caustix::files::bsdf::read(folder.join("zemax/aeroglaze_legacy.bsdf")).unwrap();
     let lobe = &table.lobes[0];
     for (t, theta_i) in lobe.theta_i_deg.iter().enumerate() {
         let mut points: Vec<(f64, f64)> = Vec::new();
@@ -129,7 +129,7 @@ fn the_total_of_an_in_plane_file_is_an_integral_in_the_plane() {
 #[test]
 fn the_total_of_a_file_that_stops_early_lies_between_cut_and_held() {
     let Some(folder) = real_folder() else { return };
-    let table = scattering::read(folder.join("zemax/ansys_planesymmetric_btdf.bsdf")).unwrap();
+    let table = caustix::files::bsdf::read(folder.join("zemax/ansys_planesymmetric_btdf.bsdf")).unwrap();
     let lobe = &table.lobes[0];
     assert!(table.warnings.iter().any(|w| w.found().contains("ends at 80 degrees")));
     for (t, theta_i) in lobe.theta_i_deg.iter().enumerate() {
@@ -160,7 +160,7 @@ fn the_total_of_a_file_that_stops_early_lies_between_cut_and_held() {
 #[test]
 fn speos_and_zemax_forms_of_brown_vinyl_agree() {
     let Some(folder) = real_folder() else { return };
-    let zemax = scattering::read(folder.join("zemax/ansys_planesymmetric_btdf.bsdf")).unwrap();
+    let zemax = caustix::files::bsdf::read(folder.join("zemax/ansys_planesymmetric_btdf.bsdf")).unwrap();
     let speos = read_speos(&folder.join("speos/planesymmetric_brdf.anisotropicbsdf"));
     let lobe = &zemax.lobes[0];
     assert_eq!(speos.incidences, lobe.theta_i_deg);
@@ -205,7 +205,7 @@ fn speos_and_zemax_forms_of_brown_vinyl_agree() {
 #[test]
 fn fred_and_zemax_forms_of_black_anodising_agree() {
     let Some(folder) = real_folder() else { return };
-    let zemax = scattering::read(folder.join("zemax/AnoBlackEC1onAlum.bsdf")).unwrap();
+    let zemax = caustix::files::bsdf::read(folder.join("zemax/AnoBlackEC1onAlum.bsdf")).unwrap();
     let fred = read_fred(&folder.join("fred/AnoBlackEC1onAlum.txt"));
     let lobe = &zemax.lobes[0];
     assert_eq!(fred.iter().map(|b| b.0).collect::<Vec<_>>(), lobe.theta_i_deg);
@@ -264,7 +264,7 @@ fn klems_tables_hold_the_values_of_their_patches() {
     for file in ["sawtooth.xml", "aerc6216_kf.xml"] {
         let path = folder.join("klems").join(file);
         let text = std::fs::read_to_string(&path).unwrap();
-        let table = scattering::read(&path).unwrap();
+        let table = caustix::files::bsdf::read(&path).unwrap();
         assert!(table.warnings[0].found().contains("Reflection Front"), "{:?}", table.warnings);
         for (lobe, part) in table.lobes.iter().zip(text.split("<WavelengthDataDirection>").skip(1)) {
             let title = part.split('<').next().unwrap();
@@ -307,7 +307,7 @@ fn klems_tables_hold_the_values_of_their_patches() {
 fn klems_albedos_are_the_sums_over_patches() {
     let Some(folder) = real_folder() else { return };
     let text = std::fs::read_to_string(folder.join("klems/aerc6216_kf.xml")).unwrap();
-    let table = scattering::read(folder.join("klems/aerc6216_kf.xml")).unwrap();
+    let table = caustix::files::bsdf::read(folder.join("klems/aerc6216_kf.xml")).unwrap();
     let edges = [0.0f64, 5.0, 15.0, 25.0, 35.0, 45.0, 55.0, 65.0, 75.0, 90.0];
     let data = text.split("<ScatteringData>").nth(1).unwrap().split('<').next().unwrap();
     let matrix: Vec<f64> = data.split_whitespace().map(|w| w.parse().unwrap()).collect();
@@ -340,7 +340,7 @@ fn files_that_are_not_read_say_why() {
         ("klems/2011-SA1-Small-CommaSeparated.XML", Kind::Missing, 107),
         ("klems/2011-SA1-Small-TabSeparated.XML", Kind::Missing, 107),
     ] {
-        let error = scattering::read(folder.join(file)).unwrap_err();
+        let error = caustix::files::bsdf::read(folder.join(file)).unwrap_err();
         assert_eq!((error.kind(), error.line()), (kind, Some(line)), "{error}");
         assert!(error.file().unwrap().ends_with(file), "{error}");
     }
@@ -349,7 +349,7 @@ fn files_that_are_not_read_say_why() {
 #[test]
 fn anisotropic_files_keep_their_rotations() {
     let Some(folder) = real_folder() else { return };
-    let table = scattering::read(folder.join("zemax/IMX455.bsdf")).unwrap();
+    let table = caustix::files::bsdf::read(folder.join("zemax/IMX455.bsdf")).unwrap();
     let lobe = &table.lobes[0];
     assert_eq!(lobe.counts(), [1, 37, 4, 21, 37]);
     assert_eq!(lobe.frame, Frame::Specular);

@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
-use caustix::bsdf::tabulated::{Options, Tabulated};
 use caustix::scattering::{Frame, LobeData, LobeSide, Quantity, ScatterTable};
 use caustix::sequence::hash::mix64;
 use caustix::sequence::to_unit_f64;
+use caustix::surface::tabulated::{Options, Tabulated};
 use glam::DVec3;
 
 #[allow(dead_code)]

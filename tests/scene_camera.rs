@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::scene::build::build;
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml::parse;
+use caustix::files::scene_toml::source::Base;
 use caustix::scene::camera::{Bandwidth, CameraSpec, Exposure, Filter, Kernel, Method};
-use caustix::scene::description::Description;
-use caustix::scene::file::parse;
 use caustix::scene::requires::requirements;
-use caustix::scene::source::Base;
 use glam::DVec3;
 
 const SCENE: &str = "[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 2]\nflux_lm = 100\n\

@@ -1,9 +1,9 @@
 //! Damaged scene files: a description or diagnostics, never a panic, and never without a place to look at.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use caustix::scene::document::MOST_ERRORS;
-use caustix::scene::file::parse;
-use caustix::scene::source::Base;
+use caustix::files::scene_toml::document::MOST_ERRORS;
+use caustix::files::scene_toml::parse;
+use caustix::files::scene_toml::source::Base;
 
 const SCENES: [(&str, &str); 6] = [
     ("wavy_glass", include_str!("../scenes/wavy_glass.toml")),

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::scene::description::{Description, ReliefDescription, ShapeDescription};
-use caustix::scene::file::parse;
-use caustix::scene::source::Base;
+use caustix::files::scene_toml::description::{Description, ReliefDescription, ShapeDescription};
+use caustix::files::scene_toml::parse;
+use caustix::files::scene_toml::source::Base;
 
 /// Where an error is expected in a text of the tests.
 const MARK: char = '«';

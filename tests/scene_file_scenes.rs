@@ -3,14 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
-use caustix::bsdf::Reflectance;
 use caustix::error::Kind;
-use caustix::scene::description::{
+use caustix::files::scene_toml::description::{
     BeamSection, ColourDescription, Description, EmitterShape, Facing, MaterialKind, ReceiverEvents,
     ReceiverSide, ReliefDescription, ShapeDescription, TransformDescription,
 };
-use caustix::scene::file::{parse, read};
-use caustix::scene::source::Base;
+use caustix::files::scene_toml::source::Base;
+use caustix::files::scene_toml::{parse, read};
+use caustix::surface::Reflectance;
 use glam::DVec3;
 
 fn folder() -> PathBuf {
@@ -130,7 +130,7 @@ fn built_in_scene_carries_its_files() {
     }
     let text = std::fs::read(folder().join("wavy_glass.toml")).unwrap();
     assert_eq!(scene.source.text.as_bytes(), text);
-    assert_eq!(scene.source.sha256, caustix::scene::source::sha256_hex(&text));
+    assert_eq!(scene.source.sha256, caustix::files::scene_toml::source::sha256_hex(&text));
     assert_eq!(scene.source.load("wavy_glass.toml").unwrap_err().kind(), Kind::Io);
 }
 

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use caustix::error::Kind;
-use caustix::scene::build::build;
-use caustix::scene::file::read;
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::read;
 
 const SCENE: &str = r#"
 [[emitter]]

@@ -6,8 +6,8 @@ mod support;
 
 use std::f64::consts::PI;
 
+use caustix::files::lm63;
 use caustix::math::solve::Solver;
-use caustix::photometry::lm63;
 use caustix::sample::grid::Grid;
 use caustix::sequence::hash::mix64;
 use caustix::sequence::to_unit_f64;

@@ -11,8 +11,6 @@ mod tables;
 
 mod support;
 
-use caustix::bsdf::tabulated::Options;
-use caustix::bsdf::{Bsdf, Fixed, Grey, Incidence, Outcome, Rgb, Tabulated, Throughput};
 use caustix::math::solve::Solver;
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::{Rejection, Sampling};
@@ -20,6 +18,8 @@ use caustix::scattering::Quantity::{Reflection, Transmission};
 use caustix::sequence::hash::mix64;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::to_unit_f64;
+use caustix::surface::tabulated::Options;
+use caustix::surface::{Bsdf, Fixed, Grey, Incidence, Outcome, Rgb, Tabulated, Throughput};
 use checks::{
     Surface, above, below_horizon, cell, integrals_agree, inverse_returns, jacobians_add_up, luminance,
     masses, samples_against_density,
@@ -367,7 +367,7 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
             let mirrored = DVec3::new(-wi.x, -wi.y, wi.z);
             // A photon that red walls have met: the weights are what reflect() leaves, luminance 1.
             let mut red = Rgb::WHITE;
-            let wall = caustix::bsdf::Reflectance::rgb([0.9, 0.3, 0.0]);
+            let wall = caustix::surface::Reflectance::rgb([0.9, 0.3, 0.0]);
             let some = IndependentPoints::new(0, 0);
             assert!((0..99).any(|i| red.reflect(&wall, &mut Coordinates::new(&some, i, true))));
             for (k, start) in [Rgb::WHITE, red].into_iter().enumerate() {

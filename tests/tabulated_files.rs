@@ -14,7 +14,6 @@ mod support;
 
 use std::path::{Path, PathBuf};
 
-use caustix::scattering;
 use checks::{
     Surface, below_horizon, incidences_of, integrals_agree, inverse_returns, jacobians_add_up,
     samples_against_density, sides,
@@ -69,7 +68,7 @@ fn surfaces_of(folder: &Path, below: &Path) -> (Vec<Surface>, Vec<String>) {
             continue;
         }
         let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
-        match scattering::read(&path) {
+        match caustix::files::bsdf::read(&path) {
             Ok(table) => surfaces.extend(sides(&name, &table)),
             Err(error) => others.push(format!("{name}: {}", error.found())),
         }
@@ -104,7 +103,7 @@ fn a_merl_file_holds() {
         let lobe = (-(h / 0.15) * (h / 0.15)).exp() * (1.0 + d);
         if bin >= 84 { [-1.0; 3] } else { [0.05 + lobe, 0.1 + 0.5 * lobe, 0.0] }
     });
-    let table = scattering::parse(&bytes, "lobe.binary").unwrap();
+    let table = caustix::files::bsdf::parse(&bytes, "lobe.binary").unwrap();
     assert!(table.warnings.iter().any(|w| w.found().contains("not measured")), "{:?}", table.warnings);
     let surfaces = sides("lobe.binary", &table);
     assert!(surfaces.len() == 1 && surfaces[0].sampler.is_coloured());

@@ -4,17 +4,17 @@
 mod closed_support;
 mod tabulated_support;
 
-use caustix::bsdf::tabulated::{Energy, Options, Sides};
-use caustix::bsdf::{Bsdf, Grey, Reference, Reflectance, Tabulated};
 use caustix::emitter::{Emitter, Isotropic};
+use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{LobeSide, ScatterTable};
-use caustix::scene::description::{ReceiverEvents, ReceiverSide};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneParts};
 use caustix::sequence::Sequence;
 use caustix::sequence::independent::IndependentPoints;
+use caustix::surface::tabulated::{Energy, Options, Sides};
+use caustix::surface::{Bsdf, Grey, Reference, Reflectance, Tabulated};
 use caustix::transport::census::Exceptions;
 use caustix::transport::{Arrival, End, Sink, walk};
 use closed_support::judge::{SIGNIFICANCE, normal_p, sidak, student_p};
@@ -195,8 +195,8 @@ fn two_lobes_that_exceed_one_together_are_scaled_together() {
 
 #[test]
 fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
-    use caustix::bsdf::{Incidence, Outcome};
     use caustix::scattering::{Frame, Quantity};
+    use caustix::surface::{Incidence, Outcome};
     let angles = || [vec![0.0], vec![0.0], steps(0.0, 90.0, 5.0), steps(0.0, 360.0, 60.0)];
     let wi = DVec3::new(0.48, 0.36, 0.8);
     for (quantity, expected) in [
@@ -228,8 +228,8 @@ fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
 
 #[test]
 fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
-    use caustix::bsdf::{Incidence, Outcome};
     use caustix::scattering::{Frame, Quantity};
+    use caustix::surface::{Incidence, Outcome};
     // Black unless light comes from phi_i = 90 degrees: seen only along one tangent.
     let angles = [vec![60.0], steps(0.0, 360.0, 45.0), steps(0.0, 90.0, 10.0), steps(0.0, 360.0, 60.0)];
     let data = lobe(
@@ -315,9 +315,9 @@ fn light_below_the_horizon_is_absorbed_and_counted() {
 
 #[test]
 fn the_account_of_coordinates_counts_what_tables_draw() {
+    use caustix::lab::study::account::Events;
     use caustix::run::{Algorithm, Plan, Settings, trace};
     use caustix::scattering::{Frame, Quantity};
-    use caustix::study::account::Events;
     let angles = || [vec![0.0, 40.0, 80.0], vec![0.0], steps(0.0, 90.0, 6.0), steps(0.0, 360.0, 30.0)];
     let glossy = lobe((Quantity::Reflection, Frame::Specular), angles(), 1, |_, _, theta, polar, _| {
         0.3 * (1.0 + theta / 90.0) * (-polar / 25.0).exp()

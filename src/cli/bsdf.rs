@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::image::atomic::write_atomically;
+use crate::files::atomic::write_atomically;
+use crate::files::bsdf::Format;
+use crate::files::scene_toml::source::read_capped;
 use crate::report::bsdf::BsdfSummary;
 use crate::report::bsdf_plot::BsdfPlot;
 use crate::report::text::rounded;
-use crate::scattering::{self, Format, ScatterTable};
-use crate::scene::source::read_capped;
+use crate::scattering::ScatterTable;
 
 use super::{BsdfArgs, exit, fail, print, warn};
 
@@ -23,9 +24,10 @@ pub fn run(args: &BsdfArgs) -> u8 {
 
 fn show(args: &BsdfArgs) -> Result<()> {
     let name = args.file.display().to_string();
-    let bytes = read_capped(&args.file, scattering::MAX_FILE_BYTES).map_err(|e| e.in_file(&args.file))?;
+    let bytes =
+        read_capped(&args.file, crate::files::bsdf::MAX_FILE_BYTES).map_err(|e| e.in_file(&args.file))?;
     let format = Format::of(&bytes, &name)?;
-    let table = scattering::parse(&bytes, &name)?;
+    let table = crate::files::bsdf::parse(&bytes, &name)?;
     let summary = BsdfSummary::new(&table, &name, format.name());
     if let Some(path) = &args.plot {
         plot(path, &table, &summary)?;

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::camera::Film;
-use crate::camera::splat::Splat;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
-use crate::run::picture;
+use crate::picture;
+use crate::picture::camera::Film;
+use crate::picture::camera::splat::Splat;
 use crate::scene::camera::{CameraSpec, Method};
 use crate::scene::{Scene, requires::requirements};
 

@@ -6,19 +6,20 @@ use std::sync::atomic::Ordering;
 use clap::Args;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::report::compare::{text::text, write_files};
-use crate::report::parts::{Found, Parts, from_bytes, to_bytes};
-use crate::run::{Algorithm, MAX_PHOTONS, Variant};
-use crate::scene::Scene;
-use crate::study::REVISION;
-use crate::study::account::Events;
-use crate::study::cells::Grids;
-use crate::study::reference::{
+use crate::files::parts::{Found, Parts, from_bytes, to_bytes};
+use crate::lab::study::REVISION;
+use crate::lab::study::account::Events;
+use crate::lab::study::cells::Grids;
+use crate::lab::study::reference::{
     MOST_REFERENCE_PHOTONS, REPLICATES, Reference, ReferencePlan, emission_map, trace_replicate,
 };
-use crate::study::results::{self, Run, Study, VariantResult};
-use crate::study::runs::{LADDER_OCTAVES, Measure, ladder};
-use crate::study::table::Table;
+use crate::lab::study::results;
+use crate::lab::study::results::{Run, Study, VariantResult};
+use crate::lab::study::runs::{LADDER_OCTAVES, Measure, ladder};
+use crate::lab::study::table::Table;
+use crate::report::compare::{text::text, write_files};
+use crate::run::{Algorithm, MAX_PHOTONS, Variant};
+use crate::scene::Scene;
 
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::render::{MAX_THREADS, load, make_directory, thread_pool};

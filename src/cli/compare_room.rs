@@ -3,11 +3,11 @@
 use std::sync::atomic::Ordering;
 
 use crate::error::{Diagnostic, Kind};
-use crate::report::parts::Parts;
+use crate::files::parts::Parts;
+use crate::lab::room::measure::{Measurement, Task, measure};
+use crate::lab::room::{Options, RoomStudy};
 use crate::report::room::{text, write_files};
 use crate::scene::Scene;
-use crate::study::room::measure::{Measurement, Task, measure};
-use crate::study::room::{Options, RoomStudy};
 
 use super::compare::{CompareArgs, command_line, found, scene_key, seeds};
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};

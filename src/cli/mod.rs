@@ -16,8 +16,8 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand};
 
 use crate::error::{Diagnostic, Kind};
+use crate::files::scene_toml::count::parse_count;
 use crate::run::MAX_REPLICATES;
-use crate::scene::count::parse_count;
 
 /// Exit codes of the contract.
 pub mod exit {

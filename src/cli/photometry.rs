@@ -1,8 +1,9 @@
 //! `caustix photometry`: what a lighting engineer wants to read about a file.
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::image::atomic::write_atomically;
-use crate::photometry::lm63::{self, generation_type};
+use crate::files::atomic::write_atomically;
+use crate::files::lm63;
+use crate::files::lm63::generation_type;
 use crate::photometry::{Photometry, Revision, Summary, Tilt};
 use crate::report::candela::polar_plot;
 use std::fmt::Write;
@@ -140,7 +141,7 @@ fn printable(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::photometry::lm63;
+    use crate::files::lm63;
 
     #[test]
     fn the_report_names_quantities_and_units() {

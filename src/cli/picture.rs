@@ -3,18 +3,17 @@
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::image::atomic::write_atomically;
+use crate::files::atomic::write_atomically;
+use crate::files::scene_toml::source::read_capped;
+use crate::picture;
+use crate::picture::photon_map::SavedMap;
+use crate::picture::photon_map::file::channels;
+use crate::picture::{AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved};
 use crate::report::camera::CameraReport;
 use crate::report::picture::{camera_attributes, write_camera};
 use crate::run::Plan;
-use crate::run::picture::{
-    self, AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved,
-};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
-use crate::scene::source::read_capped;
-use crate::tally::photon_map::SavedMap;
-use crate::tally::photon_map::file::channels;
 
 use super::RenderArgs;
 

@@ -4,15 +4,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::image::atomic::write_atomically;
+use crate::files::atomic::write_atomically;
+use crate::files::scene_toml;
+use crate::files::scene_toml::build;
+use crate::files::scene_toml::description::{Description, RunDescription};
+use crate::picture::{AnyPicture, Watch, trace_picture};
 use crate::report::camera::CameraReport;
 use crate::report::saved::SavedReport;
 use crate::report::statistics::ReceiverStatistics;
 use crate::report::{Report, maps, text};
-use crate::run::picture::{AnyPicture, Watch, trace_picture};
 use crate::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace};
-use crate::scene::description::{Description, RunDescription};
-use crate::scene::{Scene, build, file};
+use crate::scene::Scene;
 use crate::sequence::Sequence;
 
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
@@ -24,7 +26,7 @@ pub(super) const MAX_THREADS: u32 = 1024;
 /// Reads and builds a scene; without a path the built-in one.
 pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDescription), Vec<Diagnostic>> {
     let description = match path {
-        Some(path) => file::read(path)?,
+        Some(path) => scene_toml::read(path)?,
         None => Description::built_in()?,
     };
     let run = description.run;

@@ -7,17 +7,18 @@ use std::path::Path;
 use glam::{DMat3, DVec3};
 use serde::Serialize;
 
-use crate::certificate::density::file_angles_deg;
-use crate::certificate::sampler::{Effort, Sampled, made_from, sample};
-use crate::certificate::{Certificate, Density, Judge, PointKind, REPLICATES, TestName};
 use crate::emitter::photometric::grid_axes;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::image::atomic::write_atomically;
-use crate::photometry::{PhotometricType, lm63};
+use crate::files::atomic::write_atomically;
+use crate::files::lm63;
+use crate::files::scene_toml::count::parse_count;
+use crate::lab::certificate::density::file_angles_deg;
+use crate::lab::certificate::sampler::{Effort, Sampled, made_from, sample};
+use crate::lab::certificate::{Certificate, Density, Judge, PointKind, REPLICATES, TestName};
+use crate::photometry::PhotometricType;
 use crate::report::text::grouped;
 use crate::run::{Algorithm, Variant};
 use crate::sample::grid::Grid;
-use crate::scene::count::parse_count;
 use crate::sequence::Sequence;
 
 use super::{SampleArgs, exit, fail, print, say, warn};
@@ -277,7 +278,7 @@ fn chance(p: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::certificate::Draw;
+    use crate::lab::certificate::Draw;
 
     #[test]
     fn a_certificate_that_fails_is_exit_1_and_told() {

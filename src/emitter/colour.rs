@@ -3,7 +3,7 @@
 //! A colour says in which proportions the channels share the luminous flux that an emitter's flux in lumens stands for, so its
 //! luminance is 1 whatever it is: a red lamp of 100 lm and a blue one of 100 lm give the same lux.
 
-use crate::bsdf::luminance;
+use crate::surface::luminance;
 
 /// White: the channels alike, which is D65.
 pub const WHITE: [f64; 3] = [1.0; 3];

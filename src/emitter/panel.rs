@@ -7,10 +7,10 @@
 use glam::{DMat3, DVec3};
 
 use super::Emission;
-use crate::bsdf::lambertian::cosine_direction;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sequence::{Points, to_unit_f64};
+use crate::surface::lambertian::cosine_direction;
 
 /// A rectangle of constant luminance flux / (pi width height).
 #[derive(Debug, Clone, Copy)]

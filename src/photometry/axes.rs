@@ -24,7 +24,7 @@ impl PhotometricType {
 
 /// What one stored axis stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fold {
+pub(crate) enum Fold {
     /// As stored, zero outside.
     AsStored,
     /// Stored from 0; negative angles mirror it.
@@ -45,14 +45,14 @@ pub(super) enum Fold {
 
 /// The axis of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Axis {
+pub(crate) enum Axis {
     Vertical,
     Horizontal,
 }
 
 /// Something to say about the angle `index` of an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct AxisNote {
+pub(crate) struct AxisNote {
     pub axis: Axis,
     pub index: usize,
     pub found: String,
@@ -61,7 +61,7 @@ pub(super) struct AxisNote {
 }
 
 /// What an axis of type A or B stands for.
-pub(super) fn flat_fold(axis: &[f64]) -> Fold {
+pub(crate) fn flat_fold(axis: &[f64]) -> Fold {
     match axis {
         [_] => Fold::Constant,
         [first, ..] if *first == 0.0 => Fold::MirrorZero,
@@ -70,7 +70,7 @@ pub(super) fn flat_fold(axis: &[f64]) -> Fold {
 }
 
 /// What the horizontal axis of type C stands for.
-pub(super) fn circle_fold(axis: &[f64]) -> Fold {
+pub(crate) fn circle_fold(axis: &[f64]) -> Fold {
     match (axis.len(), axis.first(), axis.last()) {
         (1, ..) => Fold::Rotational,
         (_, Some(0.0), Some(90.0)) => Fold::Quadrants,
@@ -81,7 +81,7 @@ pub(super) fn circle_fold(axis: &[f64]) -> Fold {
 }
 
 /// Checks the axes of a table: what is tolerated is returned as notes, the first thing that is not as the error.
-pub(super) fn check_axes(
+pub(crate) fn check_axes(
     photometric_type: PhotometricType,
     vertical_deg: &[f64],
     horizontal_deg: &[f64],

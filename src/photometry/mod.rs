@@ -5,10 +5,9 @@
 //! factor, and field 12 where it is a factor). Degrees live here and in no later module: [`Web::full_grid`] hands
 //! out radians.
 
-mod axes;
+pub mod axes;
 pub mod beam;
 pub mod flux;
-pub mod lm63;
 pub mod opening;
 pub mod summary;
 pub mod unfold;

@@ -124,7 +124,7 @@ fn round_ball(diameter: f64, height: f64) -> OpeningShape {
 }
 
 /// The sign of a field as the tables of the standard write it.
-pub(super) fn sign(x: f64) -> char {
+pub fn sign(x: f64) -> char {
     if x > 0.0 {
         '+'
     } else if x < 0.0 {

@@ -103,7 +103,7 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::photometry::lm63;
+    use crate::files::lm63;
 
     const SMALL: &str = "IESNA91\nTILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0\n";
 

@@ -97,14 +97,14 @@ impl Web {
         Ok(Self { photometric_type, vertical_deg, horizontal_deg, candela })
     }
 
-    pub(super) fn vertical_fold(&self) -> Fold {
+    pub(crate) fn vertical_fold(&self) -> Fold {
         match self.photometric_type {
             PhotometricType::C => Fold::AsStored,
             _ => flat_fold(&self.vertical_deg),
         }
     }
 
-    pub(super) fn horizontal_fold(&self) -> Fold {
+    pub(crate) fn horizontal_fold(&self) -> Fold {
         match self.photometric_type {
             PhotometricType::C => circle_fold(&self.horizontal_deg),
             _ => flat_fold(&self.horizontal_deg),

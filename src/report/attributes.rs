@@ -1,10 +1,10 @@
 //! What an EXR says about its run: everything needed to repeat it, and nothing that a repetition would change (no time,
 //! thread count, path or date).
 
-use crate::image::exr::Value;
+use crate::files::exr::Value;
+use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use crate::run::{Outcome, Plan};
 use crate::scene::Scene;
-use crate::scene::description::{ReceiverEvents, ReceiverSide};
 use crate::scene::receiver::{Cells, Receiver};
 
 use super::json::why_no_error;

@@ -13,10 +13,10 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::error::Result;
-use crate::image::canvas::{Anchor, Colour, TextStyle};
-use crate::image::drawing::{Drawing, Pen, Shape};
-use crate::image::font;
-use crate::image::scale::linear_ticks;
+use crate::plot::canvas::{Anchor, Colour, TextStyle};
+use crate::plot::drawing::{Drawing, Pen, Shape};
+use crate::plot::font;
+use crate::plot::scale::linear_ticks;
 use crate::scattering::value::value;
 use crate::scattering::{Frame, Lobe, LobeSide, Quantity, ScatterTable};
 use crate::units::LUMINANCE_OF_RGB;
@@ -377,7 +377,7 @@ fn draw_legend(shapes: &mut Vec<Shape>, y: &mut f64, incidences: &[(f64, Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scattering::text::parse;
+    use crate::files::bsdf::text::parse;
 
     /// A table in the surface frame, of one slice a list of f at 0, 45 and 90 degrees.
     fn table(lobes: &str) -> ScatterTable {

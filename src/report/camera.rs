@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::run::picture::{Chosen, PictureSummary};
+use crate::picture::{Chosen, PictureSummary};
 use crate::scene::camera::CameraSpec;
 
 use super::text::{grouped, rounded};
@@ -144,7 +144,7 @@ fn described(density: &Chosen) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::picture::summary::Cost;
+    use crate::picture::summary::Cost;
     use crate::scene::camera::Method;
     use glam::DVec3;
 

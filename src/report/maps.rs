@@ -5,10 +5,10 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::error::Result;
-use crate::image::atomic::write_atomically;
-use crate::image::exr::{Channel, Data, write_maps};
-use crate::image::false_colour::{FalseColour, Quantity};
-use crate::image::scale::Scale;
+use crate::files::atomic::write_atomically;
+use crate::files::exr::{Channel, Data, write_maps};
+use crate::plot::false_colour::{FalseColour, Quantity};
+use crate::plot::scale::Scale;
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};

@@ -8,7 +8,6 @@ pub mod candela;
 pub mod compare;
 pub mod json;
 pub mod maps;
-pub mod parts;
 pub mod picture;
 pub mod ply;
 pub mod polar;

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use crate::bsdf::luminance_of;
-use crate::camera::Film;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::image::exr::{Channel, Data, Value, write_luminance};
-use crate::image::false_colour::{FalseColour, Quantity};
-use crate::image::png::write_rgb8;
-use crate::image::scale::Scale;
-use crate::image::tone::Tone;
+use crate::files::exr::{Channel, Data, Value, write_luminance};
+use crate::files::png::write_rgb8;
+use crate::picture::camera::Film;
+use crate::plot::false_colour::{FalseColour, Quantity};
+use crate::plot::scale::Scale;
+use crate::plot::tone::Tone;
 use crate::run::Plan;
 use crate::scene::Scene;
 use crate::scene::camera::{Bandwidth, CameraSpec, Exposure, Method};
+use crate::surface::luminance_of;
 
 use super::attributes::run_attributes;
 use super::text::{digits, rounded};
@@ -157,7 +157,7 @@ pub fn camera_attributes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::exr::{OwnedData, read_maps};
+    use crate::files::exr::{OwnedData, read_maps};
     use ::image::ImageReader;
     use glam::DVec3;
 
@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    fn floats(maps: &crate::image::exr::Maps, name: &str) -> Vec<f32> {
+    fn floats(maps: &crate::files::exr::Maps, name: &str) -> Vec<f32> {
         match &maps.channels.iter().find(|(n, _)| n == name).unwrap().1 {
             OwnedData::F32(values) => values.clone(),
             OwnedData::U32(_) => panic!("{name}"),

@@ -9,10 +9,10 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::error::Result;
+use crate::files::atomic::write_atomically;
 use crate::geometry::{Mesh, Shape};
-use crate::image::atomic::write_atomically;
-use crate::image::false_colour::value_colour;
-use crate::image::scale::{Axis, Scale};
+use crate::plot::false_colour::value_colour;
+use crate::plot::scale::{Axis, Scale};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;

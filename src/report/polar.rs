@@ -8,10 +8,10 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use crate::error::Result;
-use crate::image::canvas::{Anchor, Colour, TextStyle};
-use crate::image::drawing::{Drawing, Pen, Shape};
-use crate::image::font;
-use crate::image::scale::{Tick, linear_ticks};
+use crate::plot::canvas::{Anchor, Colour, TextStyle};
+use crate::plot::drawing::{Drawing, Pen, Shape};
+use crate::plot::font;
+use crate::plot::scale::{Tick, linear_ticks};
 
 /// Luminous intensity in one plane.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,12 +1,12 @@
-//! What the study of a room says ([`crate::study::room`]): for a terminal, as Markdown, as CSV.
+//! What the study of a room says ([`crate::lab::room`]): for a terminal, as Markdown, as CSV.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use crate::error::{Diagnostic, Result};
-use crate::image::atomic::write_atomically;
+use crate::files::atomic::write_atomically;
+use crate::lab::room::{RoomStudy, Row, SEQUENCES, Value};
 use crate::sequence::Sequence;
-use crate::study::room::{RoomStudy, Row, SEQUENCES, Value};
 
 use super::text::{grouped, rounded};
 

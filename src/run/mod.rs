@@ -4,7 +4,6 @@
 //! sum and the sum of squares over replicates are kept.
 
 pub mod algorithm;
-pub mod picture;
 pub mod plan;
 pub mod tracer;
 
@@ -142,7 +141,7 @@ pub fn trace(
 
 /// The loop over replicates and their stages. `stage` takes a tracer on to this number of photons and adds what arrives to
 /// the receivers.
-fn trace_by(
+pub fn trace_by(
     scene: &Scene,
     plan: &Plan,
     mut stage: impl FnMut(&mut Tracer<'_>, u64, &Receivers<'_>) -> Result<Traced>,

@@ -2,7 +2,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use crate::bsdf::{Grey, Rgb, Throughput};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -11,6 +10,7 @@ use crate::sequence::other::OtherPoints;
 use crate::sequence::owen::OwenPoints;
 use crate::sequence::sobol::SobolPoints;
 use crate::sequence::{Points, Sequence};
+use crate::surface::{Grey, Rgb, Throughput};
 use crate::tally::Receivers;
 use crate::transport::Sink;
 use crate::transport::attempts::advance;

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use crate::bsdf::Bsdf;
 use crate::emitter::{Emitter, Panel, collimated::CrossSection};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts, coincident_surfaces};
+use crate::surface::Bsdf;
 
-use super::description::Place;
+use crate::files::scene_toml::description::Place;
 
 /// Every pair of surfaces that lie in the same place: neither would be first. Each points to the second of the two.
 pub fn coincidences(surfaces: &[Surface], places: &[Place]) -> Vec<Diagnostic> {

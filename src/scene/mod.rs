@@ -3,28 +3,19 @@
 //! [`mod@file`] reads the text into a [`description`]; [`build`] loads the files it names and makes a [`Scene`]: surfaces with
 //! what they are made of, emitters, receivers. After that nothing is checked again.
 
-pub mod build;
 pub mod camera;
 pub mod check;
-pub mod count;
-pub mod description;
-pub mod document;
-pub mod file;
 pub mod receiver;
 pub mod requires;
-pub mod source;
-pub mod suggest;
-pub mod toml_table;
-pub mod without_camera;
 
-use crate::bsdf::{Bsdf, Tabulated};
 use crate::emitter::colour::WHITE;
 use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
+use crate::surface::{Bsdf, Tabulated};
 
+use crate::files::scene_toml::description::Place;
 use camera::CameraSpec;
-use description::Place;
 use receiver::{Receiver, ReceiverSpec};
 
 /// What a run needs to be repeated, beside its settings: the scene and the hashes of the files it names.

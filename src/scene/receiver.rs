@@ -3,7 +3,7 @@
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, Shape, SurfaceId};
 
-use super::description::{ReceiverEvents, ReceiverSide};
+use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 
 /// A receiver as it is asked for.
 #[derive(Debug, Clone)]

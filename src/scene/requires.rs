@@ -4,9 +4,9 @@
 //! has photons with weights; only one with a camera keeps photons, and only where the camera makes a map of them. Nothing that a
 //! scene can name needs wavelengths, so there are none.
 
-use crate::bsdf::Bsdf;
 use crate::emitter::Emitter;
 use crate::geometry::Shape;
+use crate::surface::Bsdf;
 
 use super::Scene;
 use super::camera::Method;

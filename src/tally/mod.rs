@@ -5,7 +5,6 @@
 //! bit.
 
 pub mod counts;
-pub mod photon_map;
 pub mod receiver;
 pub mod weighted;
 pub mod wide_sum;

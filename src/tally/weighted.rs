@@ -6,10 +6,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::bsdf::Fixed;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::Geometry;
 use crate::scene::receiver::Receiver;
+use crate::surface::Fixed;
 use crate::transport::{Arrival, Sink};
 
 use super::receiver::Routes;

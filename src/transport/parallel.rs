@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use crate::bsdf::Throughput;
 use crate::sample::coordinates::Coordinates;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::Points;
+use crate::surface::Throughput;
 
 use super::census::Census;
 use super::ledger::Ledger;
@@ -104,7 +104,7 @@ impl Order {
 }
 
 /// Traces the photons of these indices, each of which starts with the throughput `carried` in its emitter's colour:
-/// [`crate::bsdf::Grey`] unless the scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
+/// [`crate::surface::Grey`] unless the scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
 pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     points: &P,

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use crate::bsdf::{Grey, Incidence, Outcome, Throughput};
 use crate::emitter::Emission;
 use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
 use crate::sample::coordinates::Chooser;
 use crate::scene::Scene;
+use crate::surface::{Grey, Incidence, Outcome, Throughput};
 
 use super::census::Exceptions;
 

@@ -8,11 +8,11 @@ use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use crate::bsdf::{Grey, Rgb, Throughput};
 use crate::emitter::WeightedEmitters;
 use crate::sample::coordinates::Coordinates;
 use crate::scene::Scene;
 use crate::sequence::Points;
+use crate::surface::{Grey, Rgb, Throughput};
 
 use super::census::Exceptions;
 use super::parallel::{How, Order};

@@ -4,15 +4,15 @@
 
 use std::sync::atomic::AtomicBool;
 
-use caustix::bsdf::Grey;
-use caustix::camera::{Film, Pass, Sums, View, render};
-use caustix::estimate::density::Density;
+use caustix::picture::camera::{Film, Pass, Sums, View, render};
+use caustix::picture::gather::density::Density;
+use caustix::picture::photon_map::{PhotonMap, PhotonStore};
 use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
 use caustix::scene::camera::CameraSpec;
 use caustix::sequence::owen::OwenPoints;
+use caustix::surface::Grey;
 use caustix::tally::Receivers;
-use caustix::tally::photon_map::{PhotonMap, PhotonStore};
 use caustix::transport::parallel::{How, trace_range};
 use glam::DVec3;
 

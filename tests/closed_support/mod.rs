@@ -8,12 +8,12 @@ pub mod scaled;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
+use caustix::files::scene_toml::build::build;
+use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml::parse;
+use caustix::files::scene_toml::source::Base;
 use caustix::run::{Algorithm, Outcome, Plan, Settings, trace};
 use caustix::scene::Scene;
-use caustix::scene::build::build;
-use caustix::scene::description::Description;
-use caustix::scene::file::parse;
-use caustix::scene::source::Base;
 use caustix::sequence::Sequence;
 
 /// The project's folder.

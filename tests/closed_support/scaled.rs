@@ -1,9 +1,9 @@
 //! A scene in another unit of length.
 
-use caustix::scene::camera::Bandwidth;
-use caustix::scene::description::{
+use caustix::files::scene_toml::description::{
     BeamSection, Description, EmitterShape, ReliefDescription, ShapeDescription,
 };
+use caustix::scene::camera::Bandwidth;
 
 /// A description with every length times `s`, its camera's included.
 pub fn scaled(mut d: Description, s: f64) -> Description {

@@ -5,10 +5,12 @@
 use std::path::PathBuf;
 
 use caustix::error::{Diagnostic, Result};
+use caustix::files::scene_toml;
+use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml::{build, source};
 use caustix::run::{Plan, Settings};
+use caustix::scene::Scene;
 use caustix::scene::camera::{CameraSpec, Filter};
-use caustix::scene::description::Description;
-use caustix::scene::{Scene, build, file, source};
 use glam::DVec3;
 
 /// A scene and its camera.
@@ -22,7 +24,7 @@ pub struct View {
 
 /// A file of the project.
 fn described(path: &str) -> std::result::Result<Description, Vec<Diagnostic>> {
-    file::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path))
+    scene_toml::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path))
 }
 
 type Built = std::result::Result<View, Vec<Diagnostic>>;
@@ -37,7 +39,7 @@ pub fn wavy_glass(columns: u32) -> Built {
 
 /// A glass ball in a beam of its own width, and the floor behind it.
 pub fn ball(columns: u32) -> Built {
-    let scene = build::build(&file::parse(BALL, "ball", source::Base::BuiltIn)?)?;
+    let scene = build::build(&scene_toml::parse(BALL, "ball", source::Base::BuiltIn)?)?;
     let (position, look_at) = (DVec3::new(0.5, 0.0, 0.6), DVec3::new(0.22, 0.0, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 32.0, [columns, columns * 3 / 4]);
     Ok(View { name: "ball", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: true })
@@ -55,7 +57,7 @@ pub fn ring(columns: u32) -> Built {
 
 /// A pane of uneven glass in a beam narrower than it, and the floor below it, seen from below the pane.
 pub fn pane(columns: u32) -> Built {
-    let scene = build::build(&file::parse(PANE, "pane", source::Base::BuiltIn)?)?;
+    let scene = build::build(&scene_toml::parse(PANE, "pane", source::Base::BuiltIn)?)?;
     let (position, look_at) = (DVec3::new(0.0, -0.24, 0.27), DVec3::new(0.0, 0.0, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 40.0, [columns, columns * 3 / 4]);
     Ok(View { name: "pane", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: true })

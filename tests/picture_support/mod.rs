@@ -3,14 +3,14 @@
 
 use std::sync::atomic::AtomicBool;
 
-use caustix::bsdf::{Bsdf, Reflectance};
 use caustix::emitter::collimated::CrossSection;
 use caustix::emitter::{Collimated, Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface};
-use caustix::run::picture::Watch;
+use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
 use caustix::scene::camera::CameraSpec;
 use caustix::scene::{Scene, SceneParts};
+use caustix::surface::{Bsdf, Reflectance};
 use glam::DVec3;
 
 pub fn rectangle(name: &str, corner: DVec3, u: DVec3, v: DVec3) -> Surface {

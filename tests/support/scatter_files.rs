@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-use caustix::scattering::merl;
+use caustix::files::bsdf::merl;
 
 /// The folder of real scattering files; `None`, with a line that says so, where CAUSTIX_TEST_DATA is not set.
 pub fn real_folder() -> Option<PathBuf> {

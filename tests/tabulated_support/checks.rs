@@ -3,12 +3,12 @@
 // Each test binary uses a part of it.
 #![allow(dead_code)]
 
-use caustix::bsdf::Tabulated;
-use caustix::bsdf::tabulated::{Energy, Options, Sides};
 use caustix::math::solve::Solver;
 use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::hash::mix64;
 use caustix::sequence::to_unit_f64;
+use caustix::surface::Tabulated;
+use caustix::surface::tabulated::{Energy, Options, Sides};
 use glam::DVec3;
 
 use crate::support::quadrature::Gauss;

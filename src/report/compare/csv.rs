@@ -1,7 +1,7 @@
 //! compare.csv: one row per variant, number of photons and grid.
 
-use crate::study::results::Study;
-use crate::study::table::Table;
+use crate::lab::study::results::Study;
+use crate::lab::study::table::Table;
 
 /// The columns; names are a contract.
 pub const HEADER: &str = "variant,photons,cells,relative_rms,nrms,relative_l1,nrms_spread,photons_per_s,coordinates,\

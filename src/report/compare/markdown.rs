@@ -1,9 +1,9 @@
 //! compare.md: the study with everything needed to judge and to repeat it.
 
-use crate::image::scale::three_digits;
+use crate::lab::study::results::Study;
+use crate::lab::study::table::{TARGET_ERROR, Table};
+use crate::plot::scale::three_digits;
 use crate::report::text::grouped;
-use crate::study::results::Study;
-use crate::study::table::{TARGET_ERROR, Table};
 
 use super::numbers::{DAGGERS, UNKNOWN, known, list};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};
@@ -110,7 +110,7 @@ fn costs(study: &Study, table: &Table, photons: u64) -> String {
     for (v, variant) in study.variants.iter().enumerate() {
         let measured = table.rows.iter().find(|r| (r.variant, r.photons) == (v, photons));
         let most = variant.runs.iter().map(|run| run.coordinates_max).max();
-        let account = |of: fn(&crate::study::results::Account) -> f64| {
+        let account = |of: fn(&crate::lab::study::results::Account) -> f64| {
             variant.account.as_ref().map(of).map_or(UNKNOWN.to_owned(), |c| format!("{c:.4}"))
         };
         body.push(vec![

@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::image::canvas::Colour;
-use crate::image::drawing::Shape;
+use crate::plot::canvas::Colour;
+use crate::plot::drawing::Shape;
 
 /// Radius of a marker, pixels.
 const RADIUS: f64 = 5.5;

@@ -13,9 +13,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Diagnostic;
-use crate::image::atomic::write_atomically;
-use crate::study::results::Study;
-use crate::study::table::Table;
+use crate::files::atomic::write_atomically;
+use crate::lab::study::results::Study;
+use crate::lab::study::table::Table;
 
 /// What became of the files.
 #[derive(Debug, Clone, Default)]

@@ -1,8 +1,8 @@
 //! How the numbers of a study are written for people, and the marks that go with them.
 
-use crate::image::scale::three_digits;
-use crate::study::fit::{Law, Prediction, Uncertainty};
-use crate::study::table::Row;
+use crate::lab::study::fit::{Law, Prediction, Uncertainty};
+use crate::lab::study::table::Row;
+use crate::plot::scale::three_digits;
 
 /// Marks behind numbers; the footnotes say what they mean.
 #[derive(Debug, Clone, Copy)]
@@ -77,7 +77,7 @@ pub fn list(items: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::norms::Errors;
+    use crate::lab::study::norms::Errors;
 
     #[test]
     fn numbers_read_well() {

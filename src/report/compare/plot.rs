@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::image::canvas::{Anchor, Colour, TextStyle};
-use crate::image::drawing::{Drawing, Pen, Shape};
-use crate::image::font;
-use crate::image::scale::{log_ticks, round_125, three_digits};
-use crate::study::results::Study;
-use crate::study::table::{REFERENCE_MARGIN, Row, Table};
+use crate::lab::study::results::Study;
+use crate::lab::study::table::{REFERENCE_MARGIN, Row, Table};
+use crate::plot::canvas::{Anchor, Colour, TextStyle};
+use crate::plot::drawing::{Drawing, Pen, Shape};
+use crate::plot::font;
+use crate::plot::scale::{log_ticks, round_125, three_digits};
 
 use super::markers::{colour, marker};
 use super::remarks::{cells, seeds};

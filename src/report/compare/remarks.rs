@@ -1,10 +1,10 @@
 //! What is said beside the numbers, alike on the terminal and in the file: the settings, warnings, footnotes.
 
-use crate::image::scale::three_digits;
+use crate::lab::study::fit::Uncertainty;
+use crate::lab::study::results::{BASELINE, Study};
+use crate::lab::study::table::{REFERENCE_MARGIN, Table};
+use crate::plot::scale::three_digits;
 use crate::report::text::grouped;
-use crate::study::fit::Uncertainty;
-use crate::study::results::{BASELINE, Study};
-use crate::study::table::{REFERENCE_MARGIN, Table};
 
 use super::numbers::{Marks, list};
 

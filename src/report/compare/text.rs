@@ -1,9 +1,9 @@
 //! The table on the terminal, at most 110 columns wide.
 
-use crate::image::scale::three_digits;
+use crate::lab::study::results::Study;
+use crate::lab::study::table::Table;
+use crate::plot::scale::three_digits;
 use crate::report::text::grouped;
-use crate::study::results::Study;
-use crate::study::table::Table;
 
 use super::numbers::{ASCII, UNKNOWN, known};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};

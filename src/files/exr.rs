@@ -1,0 +1,386 @@
+//! Maps of numbers as OpenEXR files: f32 and u32 channels, lossless, in scan lines, with the run's description in
+//! attributes. The same contents give the same bytes.
+//!
+//! Text attributes are UTF-8. The format has no 64-bit integer: one that does not fit 32 bits is written as decimal text.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use ::exr::meta::attribute::Chromaticities;
+use ::exr::prelude as exr;
+use ::exr::prelude::{ReadChannels as _, ReadLayers as _, WritableImage as _};
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::atomic::write_atomically;
+
+/// One channel to write.
+#[derive(Debug, Clone, Copy)]
+pub struct Channel<'a> {
+    /// Its name, unique in the file.
+    pub name: &'a str,
+    /// Its values, rows from the top.
+    pub data: Data<'a>,
+}
+
+/// Values of a channel.
+#[derive(Debug, Clone, Copy)]
+pub enum Data<'a> {
+    /// 32-bit floats; NaN and infinities are kept.
+    F32(&'a [f32]),
+    /// 32-bit unsigned integers.
+    U32(&'a [u32]),
+}
+
+/// An attribute's value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// Any text.
+    Text(String),
+    /// A number, kept bit for bit.
+    F64(f64),
+    /// An integer; read back as text when it does not fit 32 bits.
+    I64(i64),
+}
+
+/// Values of a channel that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum OwnedData {
+    /// 32-bit floats.
+    F32(Vec<f32>),
+    /// 32-bit unsigned integers.
+    U32(Vec<u32>),
+}
+
+/// What [`read_maps`] finds in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Maps {
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// Names and values in the order of the file: sorted by name.
+    pub channels: Vec<(String, OwnedData)>,
+    /// The attributes that are not the format's own, sorted by name.
+    pub attributes: BTreeMap<String, Value>,
+}
+
+/// Most pixels of a file that is read.
+const READ_LIMIT: usize = 1 << 28;
+
+/// Writes channels of `width` x `height` values, first row on top, with these attributes.
+///
+/// # Errors
+/// [`Kind::Range`] for an empty map, a channel of another size, no channel, or a name that is empty, too long, taken
+/// twice or used by the format itself; [`Kind::Io`] when the file cannot be written.
+pub fn write_maps(
+    path: impl AsRef<Path>,
+    width: usize,
+    height: usize,
+    channels: &[Channel<'_>],
+    attributes: &[(String, Value)],
+) -> Result<()> {
+    let path = path.as_ref();
+    let bytes = encode(width, height, channels, attributes, Light::Other).map_err(|e| e.in_file(path))?;
+    write_atomically(path, |writer| writer.write_all(&bytes))
+}
+
+/// The same for a picture whose channels `R`, `G`, `B` (or `Y`) are in cd/m2, with the format's own attributes for that:
+/// `chromaticities` (those of ITU-R BT.709, which are sRGB's) and `whiteLuminance` = 1, the luminance of (1, 1, 1) in cd/m2.
+///
+/// # Errors
+/// As [`write_maps`].
+pub fn write_luminance(
+    path: impl AsRef<Path>,
+    width: usize,
+    height: usize,
+    channels: &[Channel<'_>],
+    attributes: &[(String, Value)],
+) -> Result<()> {
+    let path = path.as_ref();
+    let bytes = encode(width, height, channels, attributes, Light::Luminance).map_err(|e| e.in_file(path))?;
+    write_atomically(path, |writer| writer.write_all(&bytes))
+}
+
+/// What a file's numbers are to a viewer of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Light {
+    /// Linear sRGB in cd/m2.
+    Luminance,
+    /// Any other numbers.
+    Other,
+}
+
+/// Red, green, blue and white of ITU-R BT.709 in CIE 1931 x, y.
+const BT709: Chromaticities = Chromaticities {
+    red: exr::Vec2(0.64, 0.33),
+    green: exr::Vec2(0.30, 0.60),
+    blue: exr::Vec2(0.15, 0.06),
+    white: exr::Vec2(0.3127, 0.3290),
+};
+
+fn encode(
+    width: usize,
+    height: usize,
+    channels: &[Channel<'_>],
+    attributes: &[(String, Value)],
+    light: Light,
+) -> Result<Vec<u8>> {
+    check_channels(width, height, channels)?;
+    let list = channels.iter().map(|channel| {
+        let samples = match channel.data {
+            Data::F32(values) => exr::FlatSamples::F32(values.to_vec()),
+            Data::U32(values) => exr::FlatSamples::U32(values.to_vec()),
+        };
+        exr::AnyChannel::new(text(channel.name), samples)
+    });
+    let mut described = exr::LayerAttributes::default();
+    for (name, value) in attributes {
+        if described.other.insert(text(name), attribute(value)).is_some() {
+            return Err(bad_name("attribute", name, "a name used once"));
+        }
+        check_attribute_name(name)?;
+    }
+    let encoding = exr::Encoding {
+        compression: exr::Compression::ZIP16,
+        blocks: exr::Blocks::ScanLines,
+        line_order: exr::LineOrder::Increasing,
+    };
+    let channels = exr::AnyChannels::sort(list.collect());
+    let layer = exr::Layer::new((width, height), described, encoding, channels);
+    let mut image = exr::Image::from_layer(layer);
+    if light == Light::Luminance {
+        image.attributes.chromaticities = Some(BT709);
+        image.layer_data.attributes.white_luminance = Some(1.0);
+    }
+    let mut bytes = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut bytes).map_err(|error| {
+        Diagnostic::new(Kind::Io, format!("\"{error}\" while encoding"), "maps that OpenEXR can hold")
+    })?;
+    let mut bytes = bytes.into_inner();
+    sort_header(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn check_channels(width: usize, height: usize, channels: &[Channel<'_>]) -> Result<()> {
+    let cells = width.checked_mul(height).filter(|&n| n > 0 && n <= READ_LIMIT).ok_or_else(|| {
+        Diagnostic::new(Kind::Range, format!("a map of {width} x {height} cells"), "1 to 2^28 cells")
+    })?;
+    if channels.is_empty() {
+        return Err(Diagnostic::new(Kind::Range, "no channel", "at least one channel"));
+    }
+    for (i, channel) in channels.iter().enumerate() {
+        let length = match channel.data {
+            Data::F32(values) => values.len(),
+            Data::U32(values) => values.len(),
+        };
+        if length != cells {
+            let found = format!("{length} values in channel \"{}\"", channel.name);
+            return Err(Diagnostic::new(Kind::Range, found, format!("{cells} values")));
+        }
+        check_length("channel", channel.name)?;
+        if channels[..i].iter().any(|other| other.name == channel.name) {
+            return Err(bad_name("channel", channel.name, "a name used once"));
+        }
+    }
+    Ok(())
+}
+
+/// Names that the format gives a type and a meaning of its own.
+fn check_attribute_name(name: &str) -> Result<()> {
+    check_length("attribute", name)?;
+    let reserved = ::exr::meta::header::standard_names::ALL;
+    if reserved.contains(&name.as_bytes()) {
+        return Err(bad_name("attribute", name, "a name that OpenEXR does not use itself"));
+    }
+    Ok(())
+}
+
+fn check_length(what: &str, name: &str) -> Result<()> {
+    if name.is_empty() || name.len() > 255 || name.contains('\0') {
+        return Err(bad_name(what, name, "a name of 1 to 255 bytes without a zero byte"));
+    }
+    Ok(())
+}
+
+fn bad_name(what: &str, name: &str, required: &str) -> Diagnostic {
+    Diagnostic::new(Kind::Range, format!("the {what} name \"{name}\""), required)
+}
+
+fn text(value: &str) -> exr::Text {
+    exr::Text::from_slice_unchecked(value.as_bytes())
+}
+
+fn attribute(value: &Value) -> exr::AttributeValue {
+    match value {
+        Value::Text(string) => exr::AttributeValue::Text(text(string)),
+        Value::F64(number) => exr::AttributeValue::F64(*number),
+        Value::I64(number) => i32::try_from(*number)
+            .map_or_else(|_| exr::AttributeValue::Text(text(&number.to_string())), exr::AttributeValue::I32),
+    }
+}
+
+/// Puts the attributes of the one header into the order of their names: the exr crate writes them in the order of a
+/// hash map, which differs from run to run. The header keeps its length, so the offsets after it stay right.
+fn sort_header(bytes: &mut [u8]) -> Result<()> {
+    const START: usize = 8; // after the magic number and the version
+    let damaged = || Diagnostic::new(Kind::Io, "a header without an end", "an OpenEXR header");
+    let mut entries: Vec<&[u8]> = Vec::new();
+    let mut at = START;
+    while *bytes.get(at).ok_or_else(damaged)? != 0 {
+        let end = end_of_attribute(bytes, at).ok_or_else(damaged)?;
+        entries.push(&bytes[at..end]);
+        at = end;
+    }
+    // Names end with a zero byte, so comparing whole entries compares names first.
+    entries.sort_unstable();
+    let sorted = entries.concat();
+    bytes[START..START + sorted.len()].copy_from_slice(&sorted);
+    Ok(())
+}
+
+/// Name, type, length, contents: OpenEXR file layout, "Attribute layout".
+fn end_of_attribute(bytes: &[u8], start: usize) -> Option<usize> {
+    let after_zero = |from: usize| Some(from + bytes.get(from..)?.iter().position(|&b| b == 0)? + 1);
+    let length_at = after_zero(after_zero(start)?)?;
+    let length = bytes.get(length_at..length_at + 4)?;
+    let length = u32::from_le_bytes(length.try_into().ok()?) as usize;
+    Some(length_at + 4 + length).filter(|&end| end <= bytes.len())
+}
+
+/// Reads the first layer of an OpenEXR file with f32 and u32 channels.
+///
+/// # Errors
+/// [`Kind::Io`] when it cannot be read or is no such file; [`Kind::Limit`] beyond 2^28 pixels.
+pub fn read_maps(path: impl AsRef<Path>) -> Result<Maps> {
+    let path = path.as_ref();
+    let unreadable = |error: ::exr::error::Error| {
+        let required = "an OpenEXR file of f32 and u32 channels";
+        Diagnostic::new(Kind::Io, format!("\"{error}\" while reading"), required).in_file(path)
+    };
+    let meta = exr::MetaData::read_from_file(path, false).map_err(unreadable)?;
+    if meta.headers.iter().any(|h| h.layer_size.width().saturating_mul(h.layer_size.height()) > READ_LIMIT) {
+        return Err(Diagnostic::new(Kind::Limit, "more pixels", "at most 2^28 pixels").in_file(path));
+    }
+    let image = exr::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .map_err(unreadable)?;
+    let layer = image.layer_data;
+    let channels = layer.channel_data.list.into_iter().map(|channel| {
+        let data = match channel.sample_data {
+            exr::FlatSamples::F32(values) => OwnedData::F32(values),
+            exr::FlatSamples::U32(values) => OwnedData::U32(values),
+            exr::FlatSamples::F16(values) => OwnedData::F32(values.iter().map(|v| v.to_f32()).collect()),
+        };
+        (String::from_utf8_lossy(channel.name.as_slice()).into_owned(), data)
+    });
+    let others = image.attributes.other.into_iter().chain(layer.attributes.other);
+    let attributes = others.filter_map(|(name, value)| {
+        let value = match value {
+            exr::AttributeValue::Text(t) => Value::Text(String::from_utf8_lossy(t.as_slice()).into_owned()),
+            exr::AttributeValue::F64(number) => Value::F64(number),
+            exr::AttributeValue::F32(number) => Value::F64(f64::from(number)),
+            exr::AttributeValue::I32(number) => Value::I64(i64::from(number)),
+            _ => return None,
+        };
+        Some((String::from_utf8_lossy(name.as_slice()).into_owned(), value))
+    });
+    Ok(Maps {
+        width: layer.size.width(),
+        height: layer.size.height(),
+        channels: channels.collect(),
+        attributes: attributes.collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn attributes() -> Vec<(String, Value)> {
+        vec![
+            ("caustix.scene".into(), Value::Text("wavy_glass, 1 m², µ".into())),
+            ("caustix.empty".into(), Value::Text(String::new())),
+            ("caustix.flux_lm".into(), Value::F64(0.1 + 0.2)),
+            ("caustix.seed".into(), Value::I64(-7)),
+            ("caustix.photons".into(), Value::I64(1 << 40)),
+            ("units".into(), Value::Text("lx".into())),
+        ]
+    }
+
+    #[test]
+    fn values_and_attributes_come_back_bit_for_bit() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("map.exr");
+        let (width, height) = (37, 21);
+        let mut lux: Vec<f32> = (0..width * height).map(|i| (i as f32 * 0.37).exp2()).collect();
+        (lux[3], lux[4], lux[5]) = (f32::NAN, f32::NEG_INFINITY, -0.0);
+        lux[6] = f32::from_bits(1);
+        let hits: Vec<u32> = (0..(width * height) as u32).map(|i| u32::MAX - i * 1000).collect();
+        let channels = [
+            Channel { name: "standard_error", data: Data::F32(&lux) },
+            Channel { name: "hits", data: Data::U32(&hits) },
+            Channel { name: "illuminance", data: Data::F32(&lux) },
+        ];
+        write_maps(&path, width, height, &channels, &attributes()).unwrap();
+        let maps = read_maps(&path).unwrap();
+        assert_eq!((maps.width, maps.height), (width, height));
+        let names: Vec<&str> = maps.channels.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["hits", "illuminance", "standard_error"]);
+        assert_eq!(maps.channels[0].1, OwnedData::U32(hits));
+        for (_, data) in &maps.channels[1..] {
+            let OwnedData::F32(read) = data else { unreachable!() };
+            assert!(read.iter().zip(&lux).all(|(a, b)| a.to_bits() == b.to_bits()));
+        }
+        let mut expected: BTreeMap<String, Value> = attributes().into_iter().collect();
+        expected.insert("caustix.photons".into(), Value::Text((1_i64 << 40).to_string()));
+        assert_eq!(maps.attributes, expected);
+    }
+
+    #[test]
+    fn the_same_contents_give_the_same_bytes() {
+        let lux: Vec<f32> = (0..64 * 64).map(|i| (i as f32).sin()).collect();
+        let channels = [Channel { name: "illuminance", data: Data::F32(&lux) }];
+        let first = encode(64, 64, &channels, &attributes(), Light::Other).unwrap();
+        for _ in 0..8 {
+            let mut shuffled = attributes();
+            shuffled.reverse();
+            assert!(encode(64, 64, &channels, &shuffled, Light::Other).unwrap() == first);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_refused() {
+        let values = [1.0_f32; 4];
+        let good = Channel { name: "a", data: Data::F32(&values) };
+        let kind = |w, h, c: &[Channel<'_>], a: &[(String, Value)]| {
+            encode(w, h, c, a, Light::Other).unwrap_err().kind()
+        };
+        assert_eq!(kind(0, 4, &[good], &[]), Kind::Range);
+        assert_eq!(kind(3, 1, &[good], &[]), Kind::Range);
+        assert_eq!(kind(2, 2, &[], &[]), Kind::Range);
+        assert_eq!(kind(2, 2, &[good, good], &[]), Kind::Range);
+        assert_eq!(kind(2, 2, &[Channel { name: "", ..good }], &[]), Kind::Range);
+        for name in ["", "channels", "dataWindow", "a\0b"] {
+            assert_eq!(kind(2, 2, &[good], &[(name.into(), Value::I64(1))]), Kind::Range, "{name:?}");
+        }
+        let twice = [("x".into(), Value::I64(1)), ("x".into(), Value::I64(2))];
+        assert_eq!(kind(2, 2, &[good], &twice), Kind::Range);
+        assert_eq!(kind(usize::MAX, 2, &[good], &[]), Kind::Range);
+    }
+
+    #[test]
+    fn reading_what_is_no_exr_is_a_diagnostic() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.exr");
+        assert_eq!(read_maps(&path).unwrap_err().kind(), Kind::Io);
+        std::fs::write(&path, b"not an image at all").unwrap();
+        assert_eq!(read_maps(&path).unwrap_err().kind(), Kind::Io);
+    }
+}

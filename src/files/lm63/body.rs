@@ -1,0 +1,319 @@
+//! The numbers: tilt table, the record of ten, the record of three, angles and candela.
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::lm63::tokens::{Number, Tokens};
+use crate::photometry::axes::{Axis, AxisNote, check_axes};
+use crate::photometry::{PhotometricType, Revision, TiltTable, Web};
+
+/// Angles on one axis, and pairs of a tilt table, that are read at most. The finest real table has 721.
+const MAX_ANGLES: usize = 100_000;
+
+/// Intensities above this are refused: no sum over a sphere can overflow then. The sun has 3e27 cd.
+const MAX_CANDELA: f64 = 1e30;
+
+/// Ballast factors and field 12 above this are refused, for the same reason.
+const MAX_FACTOR: f64 = 1e6;
+
+/// Share of the maximum that passes for measurement noise: negative intensities, planes that should be equal.
+const NOISE: f64 = 1e-3;
+
+/// The numbers of a file, checked, in the file's units.
+#[derive(Debug)]
+pub(crate) struct Body<'a> {
+    pub lamps: f64,
+    pub lumens_per_lamp: Option<f64>,
+    pub multiplier: f64,
+    pub feet: bool,
+    pub opening: [Number<'a>; 3],
+    pub ballast_factor: f64,
+    pub field12: Number<'a>,
+    pub input_watts: f64,
+    pub web: Web,
+}
+
+/// The stream and what is wrong in it and tolerated.
+pub(crate) struct Reader<'a> {
+    pub tokens: Tokens<'a>,
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(text: &'a str, offset: usize) -> Self {
+        Self { tokens: Tokens::new(text, offset), warnings: Vec::new() }
+    }
+
+    /// Keeps a warning at this byte.
+    pub fn warn(&mut self, offset: usize, kind: Kind, found: String, required: &str, hint: &str) {
+        let mut d = Diagnostic::new(kind, found, required);
+        if !hint.is_empty() {
+            d = d.hint(hint);
+        }
+        self.warnings.push(self.tokens.place(offset, d));
+    }
+
+    fn refuse<T>(&self, number: &Number, kind: Kind, what: &str, required: &str) -> Result<T> {
+        let found = format!("{what} {}", number.text);
+        Err(self.tokens.place(number.offset, Diagnostic::new(kind, found, required)))
+    }
+
+    /// A number that must be one of these integers; `1.0` is one.
+    fn code(&mut self, what: &str, allowed: &[u32], required: &str) -> Result<u32> {
+        let number = self.tokens.number(what)?;
+        match allowed.iter().find(|&&code| f64::from(code) == number.value) {
+            Some(&code) => Ok(code),
+            None => self.refuse(&number, Kind::Range, what, required),
+        }
+    }
+
+    /// A count: a positive integer within the cap, also written `19.0`.
+    fn count(&mut self, what: &str) -> Result<usize> {
+        let number = self.tokens.number(what)?;
+        if !(number.value >= 1.0 && number.value.fract() == 0.0) {
+            return self.refuse(&number, Kind::Range, what, "a whole number, 1 or more");
+        }
+        if number.value > MAX_ANGLES as f64 {
+            return self.refuse(&number, Kind::Limit, what, &format!("at most {MAX_ANGLES}"));
+        }
+        Ok(number.value as usize)
+    }
+
+    /// A factor: 0 or more, and 0 gives a warning, since it makes the luminaire dark.
+    fn factor(&mut self, what: &str) -> Result<Number<'a>> {
+        let number = self.tokens.number(what)?;
+        if !(number.value >= 0.0 && number.value <= MAX_FACTOR) {
+            return self.refuse(&number, Kind::Range, what, &format!("a factor between 0 and {MAX_FACTOR}"));
+        }
+        if number.value == 0.0 {
+            let found = format!("{what} {}", number.text);
+            self.warn(number.offset, Kind::Range, found, "a factor above 0", "the flux is 0");
+        }
+        Ok(number)
+    }
+
+    /// The block of `TILT=INCLUDE`, or a tilt file: geometry, number of pairs, angles, factors.
+    pub fn tilt_table(&mut self) -> Result<TiltTable> {
+        let geometry = self.code("lamp-to-luminaire geometry", &[1, 2, 3], "1, 2 or 3")?;
+        let n = self.count("number of tilt angles")?;
+        self.tokens.require(2 * n as u64, |_| format!("one of {n} tilt angles and {n} factors"))?;
+        let angles = self.tokens.numbers(n, "tilt angle")?;
+        let factors = self.tokens.numbers(n, "tilt factor")?;
+        let mut falling = angles.windows(2).filter(|w| w[1].value <= w[0].value);
+        if let Some(pair) = falling.next() {
+            return self.refuse(&pair[1], Kind::Range, "tilt angle", "angles in strictly increasing order");
+        }
+        let upright = angles.iter().zip(&factors).find(|(angle, _)| angle.value == 0.0);
+        if let Some((_, factor)) = upright.filter(|(_, factor)| factor.value != 1.0) {
+            let found = format!("tilt factor {} at 0 degrees", factor.text);
+            self.warn(factor.offset, Kind::Range, found, "1 at 0 degrees", "tilt factors are not applied");
+        }
+        let values = |list: &[Number]| list.iter().map(|n| n.value).collect();
+        Ok(TiltTable { geometry, angles_deg: values(&angles), factors: values(&factors) })
+    }
+
+    /// Everything from the number of lamps on.
+    pub fn body(&mut self, revision: Revision) -> Result<Body<'a>> {
+        let lamps = self.lamps()?;
+        let lumens_per_lamp = self.lumens_per_lamp()?;
+        let multiplier = self.factor("candela multiplier")?.value;
+        let n_v = self.count("number of vertical angles")?;
+        let n_h = self.count("number of horizontal angles")?;
+        let photometric_type =
+            match self.code("photometric type", &[1, 2, 3], "1 (type C), 2 (B) or 3 (A)")? {
+                1 => PhotometricType::C,
+                2 => PhotometricType::B,
+                _ => PhotometricType::A,
+            };
+        let feet = self.code("units", &[1, 2], "1 (feet) or 2 (metres)")? == 1;
+        let opening = [
+            self.tokens.number("width of the luminous opening")?,
+            self.tokens.number("length of the luminous opening")?,
+            self.tokens.number("height of the luminous opening")?,
+        ];
+        self.require_table(n_v, n_h)?;
+        let ballast_factor = self.factor("ballast factor")?.value;
+        let field12 = self.field12(revision)?;
+        let input_watts = self.input_watts()?;
+        let vertical = self.tokens.numbers(n_v, "vertical angle")?;
+        let horizontal = self.tokens.numbers(n_h, "horizontal angle")?;
+        self.check_angles(revision, photometric_type, &vertical, &horizontal)?;
+        let values = |list: &[Number]| list.iter().map(|n| n.value).collect();
+        let web = Web {
+            photometric_type,
+            vertical_deg: values(&vertical),
+            horizontal_deg: values(&horizontal),
+            candela: self.candela(n_v * n_h, multiplier)?,
+        };
+        self.check_seam(&web, &horizontal);
+        Ok(Body {
+            lamps,
+            lumens_per_lamp,
+            multiplier,
+            feet,
+            opening,
+            ballast_factor,
+            field12,
+            input_watts,
+            web,
+        })
+    }
+
+    fn lamps(&mut self) -> Result<f64> {
+        let number = self.tokens.number("number of lamps")?;
+        if !(number.value >= 1.0 && number.value.fract() == 0.0) {
+            let found = format!("number of lamps {}", number.text);
+            self.warn(number.offset, Kind::Range, found, "a whole number, 1 or more", "it scales nothing");
+        }
+        Ok(number.value)
+    }
+
+    fn lumens_per_lamp(&mut self) -> Result<Option<f64>> {
+        let number = self.tokens.number("lumens per lamp")?;
+        if number.value < 0.0 && number.value != -1.0 {
+            let found = format!("lumens per lamp {}", number.text);
+            self.warn(number.offset, Kind::Range, found, "0 or more, or -1 (absolute)", "read as -1");
+        }
+        Ok((number.value >= 0.0).then_some(number.value))
+    }
+
+    /// Whether the file holds what its counts promise, before memory is asked for. Three numbers short is the mark
+    /// of a whole family of generated files: they leave out the record of three.
+    fn require_table(&self, n_v: usize, n_h: usize) -> Result<()> {
+        let (n_v, n_h) = (n_v as u64, n_h as u64);
+        let needed = 3 + n_v + n_h + n_v * n_h;
+        let name = |i: u64| match i {
+            0 => "the ballast factor".to_owned(),
+            1 => "field 12".to_owned(),
+            2 => "the input watts".to_owned(),
+            _ if i < 3 + n_v => format!("vertical angle {} of {n_v}", i - 2),
+            _ if i < 3 + n_v + n_h => format!("horizontal angle {} of {n_h}", i - 2 - n_v),
+            _ => format!("candela {} of {n_h} x {n_v}", i - 2 - n_v - n_h),
+        };
+        self.tokens.require(needed, name).map_err(|d| {
+            if d.kind() == Kind::Missing && self.tokens.count() + 3 == needed {
+                d.hint("just three are missing: is the record of ballast factor, field 12 and input watts there?")
+            } else {
+                d
+            }
+        })
+    }
+
+    fn field12(&mut self, revision: Revision) -> Result<Number<'a>> {
+        if revision.field12_is_factor() {
+            return self.factor("ballast-lamp photometric factor (field 12)");
+        }
+        let number = self.tokens.number("field 12")?;
+        let found = || format!("field 12 {}", number.text);
+        if revision == Revision::Y2019 {
+            if generation_type(number.text).is_none() {
+                let required = "a file generation type such as 1.10000";
+                self.warn(number.offset, Kind::Unknown, found(), required, "it is never used as a factor");
+            }
+        } else if number.value != 1.0 {
+            let hint = "it is a factor in 1986 and 1991 only, and is ignored here";
+            self.warn(number.offset, Kind::Range, found(), "1 in this edition", hint);
+        }
+        Ok(number)
+    }
+
+    fn input_watts(&mut self) -> Result<f64> {
+        let number = self.tokens.number("input watts")?;
+        if number.value < 0.0 {
+            let found = format!("input watts {}", number.text);
+            self.warn(number.offset, Kind::Range, found, "0 or more", "read as 0");
+        }
+        Ok(number.value.max(0.0))
+    }
+
+    fn check_angles(
+        &mut self,
+        revision: Revision,
+        photometric_type: PhotometricType,
+        vertical: &[Number],
+        horizontal: &[Number],
+    ) -> Result<()> {
+        let values = |list: &[Number]| list.iter().map(|n| n.value).collect::<Vec<f64>>();
+        let offset = |note: &AxisNote| {
+            let list = if note.axis == Axis::Vertical { vertical } else { horizontal };
+            list.get(note.index).map_or(0, |n| n.offset)
+        };
+        let h = values(horizontal);
+        let notes = check_axes(photometric_type, &values(vertical), &h).map_err(|note| {
+            let d = Diagnostic::new(Kind::Range, note.found.clone(), note.required);
+            self.tokens.place(offset(&note), d)
+        })?;
+        for note in notes {
+            self.warn(offset(&note), Kind::Range, note.found.clone(), note.required, note.hint);
+        }
+        let half =
+            photometric_type == PhotometricType::C && h.first() == Some(&90.0) && h.last() == Some(&270.0);
+        if half && revision >= Revision::Y2002 {
+            let found = "horizontal angles over 90..270".to_owned();
+            let hint = "read as mirrored in the 90-270 plane, as before 2002";
+            self.warn(horizontal[0].offset, Kind::Range, found, "0, 0..90, 0..180 or 0..360", hint);
+        }
+        Ok(())
+    }
+
+    /// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there.
+    fn check_seam(&mut self, web: &Web, horizontal: &[Number]) {
+        let (n_v, n_h) = (web.vertical_deg.len(), web.horizontal_deg.len());
+        let h = &web.horizontal_deg;
+        let whole = web.photometric_type == PhotometricType::C && h[0] == 0.0 && h[n_h - 1] == 360.0;
+        if !whole {
+            return;
+        }
+        let (first, last) = (&web.candela[..n_v], &web.candela[(n_h - 1) * n_v..]);
+        let step = first.iter().zip(last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if step > NOISE * web.max_intensity().intensity_cd {
+            let found = format!("planes H = 0 and H = 360 that differ by up to {step} cd");
+            self.warn(horizontal[n_h - 1].offset, Kind::Range, found, "one plane, twice", "both are kept");
+        }
+    }
+
+    /// The intensities times the multiplier; slightly negative ones become 0.
+    fn candela(&mut self, n: usize, multiplier: f64) -> Result<Vec<f64>> {
+        let mut candela = Vec::with_capacity(n);
+        let mut lowest: Option<Number> = None;
+        for _ in 0..n {
+            let number = self.tokens.number("candela")?;
+            let value = number.value * multiplier;
+            if value.abs() > MAX_CANDELA {
+                return self.refuse(&number, Kind::Limit, "candela", &format!("at most {MAX_CANDELA:e}"));
+            }
+            if number.value < lowest.map_or(0.0, |n| n.value) {
+                lowest = Some(number);
+            }
+            candela.push(value);
+        }
+        let max = candela.iter().copied().fold(0.0, f64::max);
+        if let Some(number) = lowest {
+            if number.value * multiplier < -NOISE * max || max == 0.0 {
+                let required = "0 or more (noise down to -0.1 % of the maximum is taken as 0)";
+                return self.refuse(&number, Kind::Range, "candela", required);
+            }
+            let found = format!("candela {}", number.text);
+            self.warn(number.offset, Kind::Range, found, "0 or more", "negative intensities are taken as 0");
+            for c in &mut candela {
+                *c = c.max(0.0);
+            }
+        }
+        Ok(candela)
+    }
+}
+
+/// Meaning of field 12 in LM-63-2019 (its section 5.13, Table 2). The code is text: trailing zeros may be missing.
+pub fn generation_type(text: &str) -> Option<&'static str> {
+    Some(match format!("{:0<7}", if text == "1" { "1." } else { text }).as_str() {
+        "1.00001" => "undefined or older file",
+        "1.00010" => "computer simulation",
+        "1.00000" => "test at an unaccredited laboratory",
+        "1.00100" => "test at an unaccredited laboratory, lumens scaled",
+        "1.01000" => "test at an unaccredited laboratory, angles interpolated",
+        "1.01100" => "test at an unaccredited laboratory, lumens scaled, angles interpolated",
+        "1.10000" => "test at an accredited laboratory",
+        "1.10100" => "test at an accredited laboratory, lumens scaled",
+        "1.11000" => "test at an accredited laboratory, angles interpolated",
+        "1.11100" => "test at an accredited laboratory, lumens scaled, angles interpolated",
+        _ => return None,
+    })
+}

@@ -1,0 +1,215 @@
+//! Reader of IES LM-63 files (1986, 1991, 1995, 2002, 2019).
+//!
+//! The standards are strict and the files are not: the reader takes what can be understood in one way only, says in
+//! a warning what it took how, and refuses the rest with line and column. docs/PHOTOMETRY.md lists all three.
+//!
+//! ```text
+//! [version line]                      none in 1986
+//! [KEYWORD] text ...
+//! TILT=NONE | TILT=INCLUDE | TILT=file
+//! {geometry  pairs  angles  factors}  INCLUDE only
+//! lamps lumens/lamp multiplier nV nH type units width length height
+//! ballast-factor field-12 input-watts
+//! V[nV]  H[nH]  candela[nH][nV]
+//! ```
+
+mod body;
+mod decode;
+mod header;
+mod tokens;
+
+pub use body::generation_type;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::photometry::opening::sign;
+use crate::photometry::{LuminousOpening, Photometry, Tilt, TiltTable, flux};
+use body::Reader;
+use header::{Header, has_tilt_line, read_header};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use tokens::quoted;
+
+/// Larger files are refused: the largest real one has 1.3 MB.
+pub const MAX_FILE_BYTES: u64 = 64 << 20;
+
+/// Deviation of the declared from the integrated flux that is worth a warning: real files agree within 0.25 %.
+const DECLARED_TOLERANCE: f64 = 3e-3;
+
+/// Reads a photometric file; a tilt file is looked for beside it.
+///
+/// # Errors
+/// [`Kind::Io`] when it cannot be read, [`Kind::Limit`] beyond [`MAX_FILE_BYTES`], and those of [`parse`].
+pub fn read(path: impl AsRef<Path>) -> Result<Photometry> {
+    let path = path.as_ref();
+    let bytes = read_bytes(path).map_err(|d| d.in_file(path))?;
+    parse_beside(&bytes, &path.display().to_string(), Some(path.parent().unwrap_or(Path::new("."))))
+}
+
+/// Reads the bytes of a photometric file; `name` stands in messages. A tilt file is not looked for.
+///
+/// # Errors
+/// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Range`] or [`Kind::Limit`] with file, line and column.
+pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
+    parse_beside(bytes, name, None)
+}
+
+fn read_bytes(path: &Path) -> Result<Vec<u8>> {
+    let io = |e: std::io::Error| Diagnostic::new(Kind::Io, e.to_string(), "a readable file");
+    let mut bytes = Vec::new();
+    File::open(path).map_err(io)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        let found = format!("more than {MAX_FILE_BYTES} bytes");
+        return Err(Diagnostic::new(Kind::Limit, found, format!("at most {MAX_FILE_BYTES} bytes")));
+    }
+    Ok(bytes)
+}
+
+fn parse_beside(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Photometry> {
+    let text = decode::decode(bytes);
+    let mut photometry = parse_text(&text, folder).map_err(|d| d.in_file(name))?;
+    photometry.file = name.to_owned();
+    photometry.warnings = photometry.warnings.into_iter().map(|d| d.in_file(name)).collect();
+    Ok(photometry)
+}
+
+fn parse_text(text: &str, folder: Option<&Path>) -> Result<Photometry> {
+    let mut header = read_header(text)?;
+    let mut reader = Reader::new(text, header.body);
+    reader.warnings.append(&mut header.warnings);
+    let tilt = read_tilt(&header, &mut reader, folder)?;
+    let body = reader.body(header.revision)?;
+    let fields = body.opening.map(|n| n.value);
+    let (opening, defined) = LuminousOpening::from_fields(fields, body.feet, header.revision);
+    if !defined {
+        let signs: String = fields.map(sign).iter().collect();
+        let found = format!("signs {signs} of width, length and height of the luminous opening");
+        let hint = format!("read as {}", opening.shape);
+        let required = "a combination of this edition";
+        reader.warn(body.opening[0].offset, Kind::Unknown, found, required, &hint);
+    }
+    warn_about_rest(&mut reader);
+    let mut photometry = Photometry {
+        file: String::new(),
+        revision: header.revision,
+        labels: header.labels,
+        tilt,
+        lamps: body.lamps,
+        lumens_per_lamp: body.lumens_per_lamp,
+        multiplier: body.multiplier,
+        ballast_factor: body.ballast_factor,
+        field12: body.field12.value,
+        field12_text: body.field12.text.to_owned(),
+        input_watts: body.input_watts,
+        opening,
+        web: body.web,
+        flux_declared_lm: None,
+        warnings: reader.warnings,
+    };
+    compare_declared(&mut photometry);
+    Ok(photometry)
+}
+
+fn read_tilt(header: &Header, reader: &mut Reader, folder: Option<&Path>) -> Result<Tilt> {
+    let (value, offset) = header.tilt;
+    let mut words = value.split_whitespace();
+    let first = words.next().unwrap_or("");
+    if first.is_empty() {
+        let d = Diagnostic::new(Kind::Missing, "nothing after TILT=", "NONE, INCLUDE or the name of a file");
+        return Err(reader.tokens.place(offset, d));
+    }
+    let none = first.eq_ignore_ascii_case("NONE");
+    if none || first.eq_ignore_ascii_case("INCLUDE") {
+        if words.next().is_some() {
+            let found = format!("TILT={}", quoted(value));
+            reader.warn(offset, Kind::Syntax, found, "nothing after NONE or INCLUDE", "the rest is ignored");
+        }
+        return if none { Ok(Tilt::None) } else { reader.tilt_table().map(Tilt::Include) };
+    }
+    let name = if first.eq_ignore_ascii_case("FILE") && words.next().is_some() {
+        let found = format!("TILT={}", quoted(value));
+        reader.warn(
+            offset,
+            Kind::Syntax,
+            found,
+            "TILT= and the name of the file",
+            "FILE is not part of LM-63",
+        );
+        value[first.len()..].trim()
+    } else {
+        value
+    };
+    match read_tilt_file(name, folder) {
+        Ok(table) => Ok(Tilt::File { name: name.to_owned(), table: Some(table) }),
+        Err(d) => {
+            let hint = format!("tilt factors are not applied anyway; {d}");
+            reader.warn(
+                offset,
+                d.kind(),
+                format!("tilt file {}", quoted(name)),
+                "a readable tilt file",
+                &hint,
+            );
+            Ok(Tilt::File { name: name.to_owned(), table: None })
+        }
+    }
+}
+
+/// A tilt file beside the photometric file; folders in its name belong to another machine and are dropped.
+fn read_tilt_file(name: &str, folder: Option<&Path>) -> Result<TiltTable> {
+    let Some(folder) = folder else {
+        return Err(Diagnostic::new(Kind::Unavailable, "no folder to look in", "a file beside it"));
+    };
+    let base = name.rsplit(['/', '\\']).next().filter(|base| !["", ".", ".."].contains(base));
+    let Some(base) = base else {
+        return Err(Diagnostic::new(Kind::Missing, quoted(name), "the name of a file"));
+    };
+    let path = folder.join(base);
+    let bytes = read_bytes(&path)?;
+    let text = decode::decode(&bytes);
+    Reader::new(&text, 0).tilt_table()
+}
+
+/// What stands behind the last candela value: another luminaire, surplus numbers, other text.
+fn warn_about_rest(reader: &mut Reader) {
+    let (offset, rest, behind_mark) = reader.tokens.rest();
+    let blank = |text: &str| text.chars().all(|c| c.is_whitespace() || c == '\0' || c == '\u{1a}');
+    let required = "nothing after the last candela value";
+    if has_tilt_line(rest) || has_tilt_line(behind_mark) {
+        let hint = "the first luminaire is read";
+        reader.warn(offset, Kind::Syntax, "another luminaire".to_owned(), "one luminaire", hint);
+    } else if !blank(rest) {
+        let surplus = reader.tokens.count();
+        let word = reader.tokens.peek().map_or(String::new(), |(word, _)| quoted(word));
+        let found = match surplus {
+            0 => format!("text {word}"),
+            1 => "1 surplus number".to_owned(),
+            n => format!("{n} surplus numbers"),
+        };
+        reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
+    } else if !blank(behind_mark) {
+        let found = "text behind the end-of-file mark".to_owned();
+        reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
+    }
+}
+
+/// The maker's own flux against ours: an independent check that comes with the file.
+fn compare_declared(photometry: &mut Photometry) {
+    let label =
+        photometry.label("_TOTALLUMINAIRELUMENS").or_else(|| photometry.label("TOTALLUMINAIRELUMENS"));
+    let number = label.and_then(|text| text.split_whitespace().next()).map(|word| word.replace(',', ""));
+    let declared = number.and_then(|word| word.parse::<f64>().ok()).filter(|&lm| lm > 0.0 && lm.is_finite());
+    photometry.flux_declared_lm = declared;
+    let flux_lm = flux::flux_lm(&photometry.web);
+    if flux_lm == 0.0 && photometry.multiplier > 0.0 {
+        photometry.warnings.push(Diagnostic::new(Kind::Range, "a flux of 0 lm", "some intensity above 0"));
+    }
+    if let Some(declared) = declared.filter(|&lm| (flux_lm - lm).abs() > DECLARED_TOLERANCE * lm) {
+        let found = format!("[_TOTALLUMINAIRELUMENS] {declared} for a table of {flux_lm:.1} lm");
+        let d = Diagnostic::new(Kind::Range, found, "agreement within 0.3 %");
+        photometry.warnings.push(d.hint("the table is used"));
+    }
+}
+
+#[cfg(test)]
+mod tests;

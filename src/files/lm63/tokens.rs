@@ -1,0 +1,233 @@
+//! The stream of numbers after `TILT=`: tokens, not lines.
+//!
+//! Real files put one number on each line, wrap anywhere or write one line of 700 characters, so line ends, blanks,
+//! tabs and commas all separate. A token is a decimal number or it is refused, with its place.
+
+use crate::error::{Diagnostic, Kind, Result};
+use nom::branch::alt;
+use nom::bytes::complete::{take_till, take_while};
+use nom::character::complete::{char, digit0, digit1, one_of};
+use nom::combinator::{all_consuming, opt, recognize};
+use nom::{IResult, Parser};
+
+/// A number, its text and the byte where it begins.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Number<'a> {
+    pub value: f64,
+    pub text: &'a str,
+    pub offset: usize,
+}
+
+/// Position in a text of numbers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tokens<'a> {
+    text: &'a str,
+    offset: usize,
+    end: usize,
+}
+
+fn is_separator(c: char) -> bool {
+    c.is_whitespace() || c == ',' || c == '\0'
+}
+
+fn separators(input: &str) -> IResult<&str, &str> {
+    take_while(is_separator).parse(input)
+}
+
+fn word(input: &str) -> IResult<&str, &str> {
+    take_till(is_separator).parse(input)
+}
+
+/// `-12`, `.5`, `3.`, `1.4E+0010`; neither `nan`, `inf` nor a Fortran `D` exponent.
+fn decimal(input: &str) -> IResult<&str, &str> {
+    let whole = recognize((digit1, opt((char('.'), digit0))));
+    let fraction = recognize((char('.'), digit1));
+    let exponent = (one_of("eE"), opt(one_of("+-")), digit1);
+    recognize((opt(one_of("+-")), alt((whole, fraction)), opt(exponent))).parse(input)
+}
+
+/// At most 40 characters of a text that a file brought in, quoted.
+pub(crate) fn quoted(text: &str) -> String {
+    const MOST: usize = 40;
+    if text.chars().count() <= MOST {
+        format!("{text:?}")
+    } else {
+        format!("{:?}...", text.chars().take(MOST).collect::<String>())
+    }
+}
+
+/// Line and column, both from 1, of a byte in the text; the column counts characters. CR LF, LF and CR end lines.
+pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
+    let (mut line, mut column) = (1, 1);
+    let mut after_cr = false;
+    for (i, c) in text.char_indices() {
+        if i >= offset {
+            break;
+        }
+        match c {
+            '\n' if after_cr => {}
+            '\n' | '\r' => (line, column) = (line + 1, 1),
+            _ => column += 1,
+        }
+        after_cr = c == '\r';
+    }
+    (line, column)
+}
+
+impl<'a> Tokens<'a> {
+    /// The numbers of `text` from byte `offset` on. A DOS end-of-file mark (Ctrl-Z) ends them.
+    pub fn new(text: &'a str, offset: usize) -> Self {
+        let end = text[offset..].find('\u{1a}').map_or(text.len(), |i| offset + i);
+        Self { text, offset, end }
+    }
+
+    /// The same diagnostic, at this byte.
+    pub fn place(&self, offset: usize, diagnostic: Diagnostic) -> Diagnostic {
+        let (line, column) = line_column(self.text, offset);
+        diagnostic.at(line, column)
+    }
+
+    fn skip_separators(&mut self) {
+        if let Ok((_, blank)) = separators(&self.text[self.offset..self.end]) {
+            self.offset += blank.len();
+        }
+    }
+
+    /// The next word, if there is one, and its place; the position does not move past it.
+    pub fn peek(&mut self) -> Option<(&'a str, usize)> {
+        self.skip_separators();
+        match word(&self.text[self.offset..self.end]) {
+            Ok((_, found)) if !found.is_empty() => Some((found, self.offset)),
+            _ => None,
+        }
+    }
+
+    /// The next token, which must be a finite number; `what` names it in the message.
+    pub fn number(&mut self, what: &str) -> Result<Number<'a>> {
+        let required = || format!("a number: {what}");
+        let Some((found, offset)) = self.peek() else {
+            return Err(self.end_of_numbers(Diagnostic::new(
+                Kind::Missing,
+                "the end of the file",
+                required(),
+            )));
+        };
+        let refuse = |hint: Option<&str>, kind: Kind| {
+            let d = self.place(offset, Diagnostic::new(kind, quoted(found), required()));
+            hint.map_or(d.clone(), |hint| d.hint(hint))
+        };
+        if all_consuming(decimal).parse(found).is_err() {
+            return Err(refuse(hint_for(found), Kind::Syntax));
+        }
+        match found.parse::<f64>() {
+            Ok(value) if value.is_finite() => {
+                self.offset += found.len();
+                Ok(Number { value, text: found, offset })
+            }
+            _ => Err(refuse(Some("the value is beyond the range of a double"), Kind::Range)),
+        }
+    }
+
+    /// The next `n` tokens as numbers. The caller has checked that there are as many ([`Self::require`]).
+    pub fn numbers(&mut self, n: usize, what: &str) -> Result<Vec<Number<'a>>> {
+        let mut list = Vec::with_capacity(n);
+        for _ in 0..n {
+            list.push(self.number(what)?);
+        }
+        Ok(list)
+    }
+
+    /// Checks, before anything is allocated, that `n` more numbers follow. A word in their midst is refused at its
+    /// place, the end of the file at the end; `name(i)` names the i-th of them in the message.
+    pub fn require(&self, n: u64, name: impl Fn(u64) -> String) -> Result<()> {
+        let mut ahead = *self;
+        for have in 0..n {
+            if ahead.peek().is_none() {
+                let found = format!("the end of the file after {have} of {n} numbers");
+                let d =
+                    Diagnostic::new(Kind::Missing, found, format!("{n} numbers; the next is {}", name(have)));
+                return Err(self.end_of_numbers(d));
+            }
+            if let Err(refused) = ahead.number("") {
+                // Read once more, for the message: names are made for the one number that needs it.
+                ahead.number(&name(have))?;
+                return Err(refused);
+            }
+        }
+        Ok(())
+    }
+
+    /// How many numbers follow, up to the first thing that is none.
+    pub fn count(&self) -> u64 {
+        let mut ahead = *self;
+        let mut have = 0;
+        while ahead.number("").is_ok() {
+            have += 1;
+        }
+        have
+    }
+
+    fn end_of_numbers(&self, diagnostic: Diagnostic) -> Diagnostic {
+        self.place(self.text[..self.end].trim_end().len(), diagnostic)
+    }
+
+    /// The text not read yet, with its offset, and what stands behind an end-of-file mark.
+    pub fn rest(&mut self) -> (usize, &'a str, &'a str) {
+        self.skip_separators();
+        let behind = self.text.get(self.end + 1..).unwrap_or("");
+        (self.offset, &self.text[self.offset..self.end], behind)
+    }
+}
+
+fn hint_for(found: &str) -> Option<&'static str> {
+    let lower = found.to_ascii_lowercase();
+    if found.contains(';') {
+        Some("numbers are separated by blanks, commas or line ends; LM-63 has no comments")
+    } else if lower.contains("nan") || lower.contains("inf") {
+        Some("every value must be a finite number")
+    } else if lower.contains('d') && lower.replace('d', "e").parse::<f64>().is_ok() {
+        Some("write the exponent with E")
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_every_dress() {
+        let text = "1 -2,3.5\t.25\r\n+4.\r1.4E+0010,,\n2e-1\u{a0}7\u{1a} 9";
+        let mut tokens = Tokens::new(text, 0);
+        let values: Vec<f64> = tokens.numbers(8, "value").unwrap().iter().map(|n| n.value).collect();
+        assert_eq!(values, [1.0, -2.0, 3.5, 0.25, 4.0, 1.4e10, 0.2, 7.0]);
+        assert!(tokens.peek().is_none(), "Ctrl-Z ends the numbers");
+        assert_eq!(tokens.rest().2, " 9");
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused_at_its_place() {
+        for (bad, kind) in [
+            ("nan", Kind::Syntax),
+            ("-inf", Kind::Syntax),
+            ("1;", Kind::Syntax),
+            ("1.0D+02", Kind::Syntax),
+            ("1.2.3", Kind::Syntax),
+            ("0x10", Kind::Syntax),
+            ("1e", Kind::Syntax),
+            (".", Kind::Syntax),
+            ("1e999", Kind::Range),
+        ] {
+            let text = format!("1 2\r\n  {bad} 4");
+            let error = Tokens::new(&text, 0).numbers(3, "value").unwrap_err();
+            assert_eq!(
+                (error.kind(), error.line(), error.column()),
+                (kind, Some(2), Some(3)),
+                "{bad}: {error}"
+            );
+        }
+        let error = Tokens::new("1 2\r3 ", 0).require(4, |i| format!("value {i}")).unwrap_err();
+        assert_eq!((error.kind(), error.line(), error.column()), (Kind::Missing, Some(2), Some(2)));
+    }
+}

@@ -1,0 +1,13 @@
+//! Everything that reads or writes bytes: photometric files, scattering tables, meshes, scenes, maps, parts of studies.
+//!
+//! A reader gives the plain data of the room it serves; a writer takes it. Nothing else in the program opens a file.
+
+pub mod atomic;
+pub mod bsdf;
+pub mod exr;
+pub mod lm63;
+pub mod obj;
+mod obj_text;
+pub mod parts;
+pub mod png;
+pub mod scene_toml;

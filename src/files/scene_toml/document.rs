@@ -1,0 +1,104 @@
+//! The text of a scene file while it is read: places in it, and the errors and warnings found so far.
+
+use std::cell::{Cell, RefCell};
+use std::ops::Range;
+
+use crate::error::{Diagnostic, Kind};
+use crate::files::scene_toml::description::Place;
+
+/// Most errors that are kept for one file; those beyond it are counted.
+pub const MOST_ERRORS: usize = 100;
+
+/// The text being read, and what was found wrong with it so far.
+pub struct Document<'t> {
+    name: &'t str,
+    text: &'t str,
+    line_starts: Vec<usize>,
+    errors: RefCell<Vec<Diagnostic>>,
+    unkept: Cell<usize>,
+    warnings: RefCell<Vec<Diagnostic>>,
+}
+
+impl<'t> Document<'t> {
+    /// A document of this text; `name` is the file's, for messages.
+    pub fn new(text: &'t str, name: &'t str) -> Self {
+        let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
+        Self {
+            name,
+            text,
+            line_starts: std::iter::once(0).chain(ends).collect(),
+            errors: RefCell::default(),
+            unkept: Cell::new(0),
+            warnings: RefCell::default(),
+        }
+    }
+
+    /// Line and column of a byte; beyond the end, those of the end.
+    pub fn place(&self, byte: usize) -> Place {
+        let byte = byte.min(self.text.len());
+        let line = self.line_starts.partition_point(|start| *start <= byte);
+        let start = self.line_starts.get(line.wrapping_sub(1)).copied().unwrap_or(0);
+        let before = self.text.as_bytes().get(start..byte).unwrap_or_default();
+        // Every byte that does not continue a character begins one.
+        let characters = before.iter().filter(|b| (**b & 0xC0) != 0x80).count();
+        Place { line, column: characters + 1 }
+    }
+
+    /// The text there, cut to one line of at most 40 characters.
+    pub fn excerpt(&self, span: Range<usize>) -> String {
+        const LONGEST: usize = 40;
+        let whole = self.text.get(span).unwrap_or_default();
+        let line = whole.lines().next().unwrap_or_default();
+        let mut cut: String = line.chars().take(LONGEST).collect();
+        if cut.len() < whole.trim_end().len() {
+            cut.push_str("...");
+        }
+        cut
+    }
+
+    /// Keep an error.
+    pub fn error(&self, error: Diagnostic) {
+        let mut errors = self.errors.borrow_mut();
+        if errors.len() < MOST_ERRORS {
+            errors.push(error.in_file(self.name));
+        } else {
+            drop(errors);
+            self.count_error();
+        }
+    }
+
+    /// Count an error that is not kept.
+    pub fn count_error(&self) {
+        self.unkept.set(self.unkept.get() + 1);
+    }
+
+    /// Whether further errors are only counted.
+    pub fn is_full(&self) -> bool {
+        self.errors.borrow().len() >= MOST_ERRORS
+    }
+
+    /// Keep an error about this place.
+    pub fn error_at(&self, place: Place, kind: Kind, found: impl Into<String>, required: impl Into<String>) {
+        self.error(Diagnostic::new(kind, found, required).at(place.line, place.column));
+    }
+
+    /// Keep a warning about this place.
+    pub fn warn_at(&self, place: Place, kind: Kind, found: impl Into<String>, required: impl Into<String>) {
+        let warning = Diagnostic::new(kind, found, required).at(place.line, place.column);
+        self.warnings.borrow_mut().push(warning.in_file(self.name));
+    }
+
+    /// The warnings, or the errors in the order of the file.
+    pub fn finish(self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        let mut errors = self.errors.into_inner();
+        if errors.is_empty() {
+            return Ok(self.warnings.into_inner());
+        }
+        errors.sort_by_key(|e| (e.line(), e.column()));
+        if self.unkept.get() > 0 {
+            let found = format!("{} more errors, not listed", self.unkept.get());
+            errors.push(Diagnostic::new(Kind::Limit, found, "a scene without errors").in_file(self.name));
+        }
+        Err(errors)
+    }
+}

@@ -1,0 +1,102 @@
+//! `[material.NAME]`: dielectric, mirror, lambertian, absorber, tabulated.
+
+use crate::error::Kind;
+use crate::files::scene_toml::description::{MaterialDescription, MaterialKind, TabulatedDescription};
+use crate::files::scene_toml::toml_table::{Interval, Table};
+use crate::files::scene_toml::{ANGLE, direction};
+use crate::surface::Reflectance;
+use crate::surface::tabulated::{Energy, Sides};
+
+const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
+const REFLECTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a reflectance from 0 to 1" };
+
+#[derive(Clone, Copy)]
+enum Type {
+    Dielectric,
+    Mirror,
+    Lambertian,
+    Absorber,
+    Tabulated,
+}
+
+const TYPES: [(&str, Type); 5] = [
+    ("dielectric", Type::Dielectric),
+    ("mirror", Type::Mirror),
+    ("lambertian", Type::Lambertian),
+    ("absorber", Type::Absorber),
+    ("tabulated", Type::Tabulated),
+];
+
+const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back), ("both", Sides::Both)];
+
+const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
+
+pub(crate) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDescription> {
+    let place = table.place();
+    if table.is_unavailable("type", &["conductor"], &TYPES.map(|(word, _)| word)) {
+        return None;
+    }
+    let kind = table.word("type", &TYPES);
+    let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
+    let kind = table.require("type", kind, required)?;
+    let kind = match kind {
+        Type::Dielectric => read_dielectric(&mut table),
+        Type::Mirror => {
+            table.call("a mirror");
+            let reflectance = read_reflectance(&mut table);
+            Some(MaterialKind::Mirror { reflectance: reflectance.unwrap_or(Reflectance::grey(1.0)) })
+        }
+        Type::Lambertian => {
+            table.call("a lambertian material");
+            let reflectance = read_reflectance(&mut table);
+            let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+            reflectance.map(|reflectance| MaterialKind::Lambertian { reflectance })
+        }
+        Type::Absorber => {
+            table.call("an absorber");
+            Some(MaterialKind::Absorber)
+        }
+        Type::Tabulated => read_tabulated(&mut table),
+    };
+    table.finish();
+    Some(MaterialDescription { name, kind: kind?, place })
+}
+
+/// A number, or `[r, g, b]`.
+fn read_reflectance(table: &mut Table<'_, '_>) -> Option<Reflectance> {
+    table.number_or_vector("reflectance", &REFLECTANCE).map(|rgb| Reflectance::rgb(rgb.to_array()))
+}
+
+fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+    table.call("a dielectric");
+    let ior = table.number("ior", &IOR);
+    let ior_outside = table.number("ior_outside", &IOR).unwrap_or(1.0);
+    let ior = table.require("ior", ior, IOR.words)?;
+    if ior == ior_outside {
+        let place = table.place_of("ior").unwrap_or(table.place());
+        let found = format!("ior = {ior}, the same as ior_outside");
+        table.document().warn_at(place, Kind::Range, found, "two media that differ: light passes unchanged");
+    }
+    Some(MaterialKind::Dielectric { ior, ior_outside })
+}
+
+fn read_tabulated(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+    table.call("a tabulated material");
+    let file = table.path("file");
+    let sides = table.word("side", &SIDES).unwrap_or_default();
+    let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
+    let reference = match table.place_of("reference") {
+        Some(_) => Some(direction(table, "reference", None)?),
+        None => None,
+    };
+    let energy = table.word("energy", &ENERGIES).unwrap_or_default();
+    let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
+    Some(MaterialKind::Tabulated(TabulatedDescription {
+        file: file?,
+        sides,
+        rotation_deg,
+        reference,
+        energy,
+        specular_remainder,
+    }))
+}

@@ -1,0 +1,99 @@
+//! The names of one sort of part, each used once.
+
+use std::collections::BTreeMap;
+
+use crate::error::{Diagnostic, Kind};
+use crate::files::scene_toml::description::{Place, Placed, Reference};
+use crate::files::scene_toml::document::Document;
+use crate::files::scene_toml::suggest;
+use crate::files::scene_toml::toml_table::{Table, shown};
+
+/// Longest name, in characters.
+const LONGEST_NAME: usize = 100;
+
+/// Names with their places and indices; parts with an error keep theirs, so that a reference to one is no
+/// second error.
+pub(crate) struct Names {
+    what: &'static str,
+    known: BTreeMap<String, (Place, usize)>,
+}
+
+impl Names {
+    pub(crate) fn new(what: &'static str) -> Self {
+        Self { what, known: BTreeMap::new() }
+    }
+
+    /// Add a name; a second use is an error at its place that says where the first one is.
+    pub(crate) fn insert(&mut self, document: &Document<'_>, name: &str, place: Place, index: usize) {
+        self.insert_as(document, name, name, place, index);
+    }
+
+    /// The same for a name that is compared as `key`.
+    pub(crate) fn insert_as(
+        &mut self,
+        document: &Document<'_>,
+        name: &str,
+        key: &str,
+        place: Place,
+        index: usize,
+    ) {
+        let what = self.what;
+        if name.is_empty() || name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
+            let found = format!("the {what} name `{}`", shown(name));
+            let required =
+                format!("a name of 1 to {LONGEST_NAME} characters, none of them a control character");
+            document.error_at(place, Kind::Range, found, required);
+        }
+        if let Some((first, _)) = self.known.get(key) {
+            let found =
+                format!("the {what} name `{}` a second time (first in line {})", shown(name), first.line);
+            let required = format!("a name of its own for every {what}");
+            document.error_at(place, Kind::Range, found, required);
+            return;
+        }
+        self.known.insert(key.to_string(), (place, index));
+    }
+
+    /// Names, places and indices in the order of the file.
+    pub(crate) fn in_order(&self) -> Vec<(&str, Place, usize)> {
+        let mut all: Vec<_> =
+            self.known.iter().map(|(name, (place, i))| (name.as_str(), *place, *i)).collect();
+        all.sort_by_key(|(_, _, index)| *index);
+        all
+    }
+
+    /// The part that `key` names; absent or unknown: an error with the nearest known name.
+    pub(crate) fn refer(&self, table: &mut Table<'_, '_>, key: &'static str) -> Option<Reference> {
+        let what = self.what;
+        let text = table.text(key);
+        let Placed { value: name, place } =
+            table.require(key, text, &format!("the name of a {what}, in quotes"))?;
+        if let Some((_, index)) = self.known.get(&name) {
+            return Some(Reference { name, index: *index, place });
+        }
+        let document = table.document();
+        if document.is_full() {
+            document.count_error();
+            return None;
+        }
+        document.error(self.unknown(&name).at(place.line, place.column));
+        None
+    }
+
+    fn unknown(&self, name: &str) -> Diagnostic {
+        const MOST_LISTED: usize = 20;
+        let what = self.what;
+        let names: Vec<&str> = self.in_order().into_iter().map(|(name, _, _)| name).collect();
+        let required = match names.len() {
+            0 => format!("a {what} of this scene: there is none"),
+            1..=MOST_LISTED => format!("a {what} of this scene: {}", suggest::list(&names)),
+            many => format!("one of the {many} {what}s of this scene"),
+        };
+        let found = format!("the unknown {what} `{}`", shown(name));
+        let error = Diagnostic::new(Kind::Unknown, found, required);
+        match suggest::nearest(name, &names) {
+            Some(near) => error.hint(format!("did you mean `{near}`?")),
+            None => error,
+        }
+    }
+}

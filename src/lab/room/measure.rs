@@ -1,0 +1,145 @@
+//! One measurement: N points of a sequence through a scene, every photon reflected M times.
+
+use std::f64::consts::PI;
+use std::fmt;
+use std::sync::atomic::AtomicBool;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::lab::study::runs::processor_time;
+use crate::run::tracer::PointSet;
+use crate::sample::method::Sampling;
+use crate::scene::Scene;
+use crate::sequence::{Points, Sequence};
+use crate::surface::Fixed;
+use crate::tally::WeightedReceivers;
+use crate::transport::parallel::{How, Traced, trace_range};
+
+/// What to measure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Task {
+    /// The points.
+    pub sequence: Sequence,
+    /// Their seed; 0 where they have none.
+    pub seed: u64,
+    /// The first N points; the set of N points of a sequence that is made for their number.
+    pub photons: u64,
+}
+
+impl fmt::Display for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} photons, {}", self.photons, self.sequence.name())?;
+        if self.sequence.is_randomised() { write!(f, ", seed {}", self.seed) } else { Ok(()) }
+    }
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// Name of the sequence.
+    pub sequence: String,
+    /// Its seed; 0 where it has none.
+    pub seed: u64,
+    /// Photons.
+    pub photons: u64,
+    /// Mean radiance arriving in each cell of the scene's receivers, one receiver after another, by channel: flux / area
+    /// / pi, in cd/m2 of a white of which all channels are equal.
+    pub radiance: Vec<[f64; 3]>,
+    /// Photons that left the scene.
+    pub escaped: u64,
+    /// Mean and greatest number of coordinates of a photon.
+    pub coordinates: (f64, u32),
+    /// Time of tracing, s.
+    pub trace_s: f64,
+}
+
+impl Measurement {
+    /// Whether it is that of this task.
+    pub fn is_of(&self, task: &Task) -> bool {
+        self.sequence == task.sequence.name() && self.seed == task.seed && self.photons == task.photons
+    }
+}
+
+/// The reflections M that a scene names.
+///
+/// # Errors
+/// A scene without `[compare]`.
+pub(crate) fn reflections(scene: &Scene) -> Result<u32> {
+    scene.compared_reflections.ok_or_else(|| {
+        Diagnostic::new(
+            Kind::Missing,
+            "a scene without [compare]",
+            "[compare] with reflections = M, the number of reflections of every photon",
+        )
+    })
+}
+
+/// Areas of the cells of all receivers, m2.
+pub(crate) fn areas_m2(scene: &Scene) -> Vec<f64> {
+    scene.receivers.iter().flat_map(|r| (0..r.cells.len()).map(|cell| r.area_m2(cell))).collect()
+}
+
+/// Traces the photons of a task through exactly M reflections each; `progress` is told the number of photons after each
+/// batch. The same numbers, time apart, with any number of threads.
+///
+/// # Errors
+/// A scene without `[compare]`; more photons than [`WeightedReceivers`] has room for; an interrupt.
+pub fn measure(
+    scene: &Scene,
+    task: &Task,
+    interrupt: &AtomicBool,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Measurement> {
+    let reflections = reflections(scene)?;
+    let set = PointSet { sequence: task.sequence, seed: task.seed, replicate: 0, number: task.photons };
+    let points = set.any()?;
+    let tally = WeightedReceivers::new(
+        &scene.geometry,
+        &scene.receivers,
+        task.photons,
+        arrivals(scene, reflections),
+    )?;
+    let started = processor_time()?;
+    let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
+    let traced = trace(scene, &points, task, reflections, how, &tally);
+    if !traced.complete {
+        let found = format!("an interrupt before {task} were traced");
+        return Err(Diagnostic::new(Kind::Interrupted, found, "all of them for a result"));
+    }
+    let luminous = scene.emitters.flux_lm() / task.photons as f64 / PI;
+    Ok(Measurement {
+        sequence: task.sequence.name().to_string(),
+        seed: task.seed,
+        photons: task.photons,
+        radiance: areas_m2(scene)
+            .iter()
+            .enumerate()
+            .map(|(cell, area)| tally.weight(cell).map(|w| luminous * w / area))
+            .collect(),
+        escaped: traced.ledger.escaped,
+        coordinates: (traced.census.dimension_mean(), traced.census.dimension_max),
+        trace_s: processor_time()?.duration_since(started).as_secs_f64(),
+    })
+}
+
+fn trace<P: Points>(
+    scene: &Scene,
+    points: &P,
+    task: &Task,
+    reflections: u32,
+    how: How<'_>,
+    tally: &WeightedReceivers<'_>,
+) -> Traced {
+    trace_range(scene, points, 0..task.photons, Fixed::white(reflections), how, || tally.sink())
+}
+
+/// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics as often as
+/// roulette lets it. Photons of coloured light count as often as their strongest channel outweighs white's.
+fn arrivals(scene: &Scene, reflections: u32) -> u32 {
+    let passes = scene.receivers.iter().any(|r| scene.bsdf(r.surface).is_transparent());
+    let arrivals = if passes { crate::transport::walk::MAX_EVENTS } else { reflections + 1 };
+    let emitters = 0..scene.emitters.as_slice().len();
+    let strongest = emitters.flat_map(|e| scene.emitter_colour(e)).fold(1.0, f64::max);
+    arrivals * strongest.ceil() as u32
+}

@@ -1,0 +1,265 @@
+//! The coordinates that a photon uses, predicted from the events it goes through, beside the paper's equations.
+//!
+//! The prediction shares nothing with the counter in [`crate::sample::coordinates`]: events are counted as the walk asks for
+//! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
+//! integrals.
+
+use crate::emitter::Emitter;
+use crate::run::Algorithm;
+use crate::sample::choose::Reusable;
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
+use crate::sample::method::{Rejection, Sampling};
+use crate::scene::Scene;
+use crate::sequence::Points;
+use crate::sequence::independent::IndependentPoints;
+use crate::surface::{Bsdf, Grey, Incidence, Rgb, Throughput};
+use crate::transport::census::Exceptions;
+use crate::transport::{Arrival, End, Sink, walk};
+
+use crate::lab::study::results::Account;
+
+/// Photons whose events are counted.
+const PHOTONS: u64 = 1 << 16;
+
+/// What photons of a scene go through, on average over photons.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Events {
+    /// Events at a mirror or a dielectric, B_s.
+    pub specular: f64,
+    /// Scatterings by other surfaces, B_d.
+    pub scattered: f64,
+    /// 1 for a photon that escapes, 2 for one that is absorbed: C.
+    pub end: f64,
+    /// Events with more than one outcome.
+    pub decisions: f64,
+    /// Coordinates that those take with renormalisation: one for all, and one more whenever fewer than 24 bits are left.
+    pub shared: f64,
+    /// Continuous coordinates of scattered directions.
+    pub continuous: f64,
+    /// Of those, the ones of tables, two each.
+    pub tables: f64,
+    /// Choices of a slice and of a cell of a table, which share the first of those two with renormalisation.
+    pub table_choices: f64,
+    /// Proposals that tables take by rejection: inside cells, against the largest value.
+    pub table_proposals: [f64; 2],
+}
+
+impl Events {
+    /// Counts the events of the scene's first 2^16 photons under independent points.
+    pub fn count(scene: &Scene) -> Self {
+        count(scene, &IndependentPoints::new(0, 0))
+    }
+
+    /// The account of an algorithm, coordinates a photon.
+    pub fn account(&self, scene: &Scene, algorithm: Algorithm) -> Account {
+        let events = if algorithm.variant.reuses() { self.shared } else { self.decisions };
+        Account {
+            by_event: emission(scene, algorithm) + events + self.scattering(algorithm),
+            equation_4: 3.0 + self.specular + 3.0 * self.scattered + self.end,
+            equation_6: 2.0 + 2.0 * self.scattered + self.end,
+        }
+    }
+}
+
+impl Events {
+    /// Coordinates of scattered directions.
+    fn scattering(&self, algorithm: Algorithm) -> f64 {
+        let others = self.continuous - self.tables;
+        let choices = if algorithm.variant.reuses() { 0.0 } else { self.table_choices };
+        let [cells, whole] = self.table_proposals;
+        match algorithm.sampling() {
+            Sampling::Inverse(_) => others + self.tables + choices,
+            Sampling::Rejection(Rejection::Cell) => others + 3.0 * cells + choices,
+            // No cell is chosen: one choice a scattering less.
+            Sampling::Rejection(Rejection::Table | Rejection::NextPoint) => {
+                others + 3.0 * whole + (choices - 0.5 * self.tables).max(0.0)
+            }
+        }
+    }
+}
+
+/// Coordinates of an emission: the choices (emitter, cell), each with a coordinate of its own unless they are shared, then
+/// the direction.
+fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
+    let emitters = scene.emitters.as_slice();
+    let chosen_emitter = emitters.iter().filter(|e| e.flux_lm() > 0.0).count() > 1;
+    let total = scene.emitters.flux_lm();
+    emitters
+        .iter()
+        .map(|emitter| {
+            let cells = match emitter {
+                Emitter::Photometric(e) => Some(e.grid()),
+                _ => None,
+            };
+            let chosen_cell = cells.is_some_and(|grid| !grid.choice().is_single());
+            let own = |choices: [bool; 2]| {
+                let choices = choices.iter().filter(|c| **c).count() as f64;
+                if algorithm.variant.reuses() { 0.0 } else { choices }
+            };
+            let coordinates = match (algorithm.sampling(), cells) {
+                (Sampling::Rejection(Rejection::Cell), Some(grid)) => {
+                    own([chosen_emitter, chosen_cell]) + 3.0 * grid.proposals_of_cells()
+                }
+                (Sampling::Rejection(_), Some(grid)) => {
+                    own([chosen_emitter, false]) + 3.0 * grid.proposals_of_table()
+                }
+                _ => own([chosen_emitter, chosen_cell]) + emitter.continuous_coordinates(),
+            };
+            emitter.flux_lm() / total * coordinates
+        })
+        .sum()
+}
+
+fn count<P: Points>(scene: &Scene, points: &P) -> Events {
+    let mut sum = Events::default();
+    for index in 0..PHOTONS {
+        let mut chooser = Watched::new(Coordinates::new(points, index, true));
+        let (emitter, emission) = scene.emitters.emit(&mut chooser.inner);
+        let mut sink = Arrivals { scene, events: Events::default() };
+        let start = scene.start(emitter);
+        let exceptions = &mut Exceptions::default();
+        let end = if scene.is_coloured() {
+            let carried = Rgb::WHITE.tinted(scene.emitter_colour(emitter));
+            walk(scene, emission, start, carried, &mut chooser, &mut sink, exceptions)
+        } else {
+            walk(scene, emission, start, Grey, &mut chooser, &mut sink, exceptions)
+        };
+        let mut events = sink.events;
+        match end {
+            End::Absorbed(surface) => {
+                // The last arrival was no scattering.
+                events.end = 2.0;
+                match scene.bsdf(surface) {
+                    Bsdf::Lambertian { .. } | Bsdf::Tabulated(_) => events.scattered -= 1.0,
+                    Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => {}
+                }
+            }
+            End::Escaped | End::Killed => events.end = 1.0,
+        }
+        sum.specular += events.specular;
+        sum.scattered += events.scattered;
+        sum.end += events.end;
+        sum.decisions += chooser.decisions;
+        sum.shared += chooser.shared;
+        sum.continuous += chooser.continuous;
+        sum.tables += chooser.tables;
+        sum.table_choices += chooser.table_choices;
+        for (total, proposals) in sum.table_proposals.iter_mut().zip(events.table_proposals) {
+            *total += proposals;
+        }
+    }
+    let n = PHOTONS as f64;
+    Events {
+        specular: sum.specular / n,
+        scattered: sum.scattered / n,
+        end: sum.end / n,
+        decisions: sum.decisions / n,
+        shared: sum.shared / n,
+        continuous: sum.continuous / n,
+        tables: sum.tables / n,
+        table_choices: sum.table_choices / n,
+        table_proposals: sum.table_proposals.map(|p| p / n),
+    }
+}
+
+/// Counts arrivals by what the surface is.
+struct Arrivals<'s> {
+    scene: &'s Scene,
+    events: Events,
+}
+
+impl<T> Sink<T> for Arrivals<'_> {
+    fn arrive(&mut self, arrival: &Arrival<'_, T>) {
+        match self.scene.bsdf(arrival.hit.surface) {
+            Bsdf::Dielectric(_) | Bsdf::Mirror { .. } => self.events.specular += 1.0,
+            Bsdf::Lambertian { .. } => self.events.scattered += 1.0,
+            Bsdf::Tabulated(table) => {
+                self.events.scattered += 1.0;
+                let sign = if arrival.hit.front { 1.0 } else { -1.0 };
+                let at = Incidence {
+                    direction: arrival.direction,
+                    facet: arrival.hit.normal * sign,
+                    smooth: arrival.hit.shading_normal * sign,
+                    front: arrival.hit.front,
+                };
+                let (cells, whole) = table.proposals(&at);
+                self.events.table_proposals[0] += cells;
+                self.events.table_proposals[1] += whole;
+            }
+            Bsdf::Absorber => {}
+        }
+    }
+}
+
+/// Passes questions on and counts them.
+struct Watched<'p, P> {
+    inner: Coordinates<'p, P>,
+    decisions: f64,
+    shared: f64,
+    /// Probability of what was decided on the coordinate in use; `None` before the first.
+    span: Option<f64>,
+    continuous: f64,
+    tables: f64,
+    table_choices: f64,
+}
+
+impl<'p, P: Points> Watched<'p, P> {
+    fn new(inner: Coordinates<'p, P>) -> Self {
+        let (tables, table_choices) = (0.0, 0.0);
+        Self { inner, decisions: 0.0, shared: 0.0, span: None, continuous: 0.0, tables, table_choices }
+    }
+
+    /// An event of this probability on the coordinate of all events.
+    fn share(&mut self, probability: f64) {
+        // Of 64 bits 24 must be left: 40 may be spent.
+        let left = self.span.filter(|span| -span.log2() <= 40.0);
+        if left.is_none() {
+            self.shared += 1.0;
+        }
+        self.span = Some(left.unwrap_or(1.0) * probability);
+    }
+}
+
+impl<P: Points> Chooser for Watched<'_, P> {
+    fn happens(&mut self, probability: f64) -> bool {
+        let happened = self.inner.happens(probability);
+        if probability > 0.0 && probability < 1.0 {
+            self.decisions += 1.0;
+            self.share(if happened { probability } else { 1.0 - probability });
+        }
+        happened
+    }
+
+    fn uniform(&mut self, purpose: Purpose) -> f64 {
+        self.continuous += 1.0;
+        self.inner.uniform(purpose)
+    }
+
+    fn reusable(&mut self, purpose: Purpose) -> Reusable {
+        // Only tables ask for these, for two each.
+        self.continuous += 1.0;
+        self.tables += 1.0;
+        self.inner.reusable(purpose)
+    }
+
+    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
+        self.table_choices += 1.0;
+        let mut probability = 1.0;
+        let chosen = self.inner.decide(purpose, |u| {
+            let before = u.span();
+            let chosen = choice(u);
+            probability = u.span() / before;
+            chosen
+        });
+        self.share(probability);
+        chosen
+    }
+
+    fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
+        // A row and a column: without renormalisation they are one choice, of a cell.
+        if probability < 1.0 {
+            self.table_choices += 0.5;
+        }
+        self.inner.left(left, probability, purpose)
+    }
+}

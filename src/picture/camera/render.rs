@@ -1,0 +1,176 @@
+//! Passes of the camera over its pixels, tile by tile over threads; the same bits for any number of them.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::picture::camera::eye::{EyePath, Looks};
+use crate::picture::camera::film::{PixelSums, SETS, Sums, TILE, TILE_PIXELS};
+use crate::picture::camera::filter;
+use crate::picture::camera::view::View;
+use crate::picture::gather::density::Density;
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
+use crate::sequence::hash::stream_key;
+use crate::sequence::owen::OwenPoints;
+use crate::surface::luminance_of;
+
+/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not hold all of
+/// them.
+#[derive(Debug, Clone)]
+pub struct Pass<'d, const C: usize> {
+    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run, so that passes add
+    /// up.
+    pub densities: &'d [Density<'d, C>],
+    /// Replicates that have photons in this pass.
+    pub replicates: Range<u32>,
+    /// Whether these replicates end with this pass. A pass that is a part of a replicate has one replicate.
+    pub finishes: bool,
+    /// Whether emitters and the background are added: in one pass only.
+    pub emission: bool,
+    /// Whether direct light is added: in one pass only.
+    pub direct: bool,
+}
+
+impl<'d, const C: usize> Pass<'d, C> {
+    /// All there is: densities of all photons, of this many replicates.
+    pub fn whole(densities: &'d [Density<'d, C>], replicates: u32) -> Self {
+        Self { densities, replicates: 0..replicates, finishes: true, emission: true, direct: true }
+    }
+
+    /// Emitters and the background alone: what is left to the eye where every photon is joined to the pinhole.
+    pub fn emission() -> Self {
+        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false }
+    }
+
+    /// Further photons of these replicates.
+    pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>, finishes: bool) -> Self {
+        Self { densities, replicates, finishes, emission: false, direct: false }
+    }
+}
+
+/// What a pass did beside its pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rendered {
+    /// Pixels that an interrupt left unseen: black, of unknown error.
+    pub unseen: u64,
+    /// Eye paths that were ended because they did not end by themselves.
+    pub killed: u64,
+}
+
+/// Coordinates of a pixel's samples that come from a net; those beyond are independent.
+const NET_COORDINATES: u32 = 12;
+/// Salt of the pixels' seeds.
+const SALT: u64 = 0xca;
+
+/// Adds a pass to the sums. `progress` is told the number of pixels after each tile.
+///
+/// # Errors
+/// One channel for a scene in colour; sums of another picture.
+pub fn render<const C: usize>(
+    view: &View<'_>,
+    pass: &Pass<'_, C>,
+    sums: &mut Sums<C>,
+    interrupt: &AtomicBool,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Rendered> {
+    if !(C == 3 || (C == 1 && !view.scene.is_coloured())) || sums.pixels() != view.spec.pixels {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            format!("a picture of {C} channels and {:?} pixels", sums.pixels()),
+            format!("3 channels for a scene in colour, else 1 or 3; {:?} pixels", view.spec.pixels),
+        ));
+    }
+    let pixels = view.spec.pixels;
+    let (killed, unseen) = (AtomicU64::new(0), AtomicU64::new(0));
+    let sets = SETS.min(view.spec.samples);
+    sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
+        let mut brush = Brush::new(view, pass, sets);
+        let corner = Sums::<C>::corner(pixels, tile);
+        let (mut done, mut left) = (0, 0);
+        for (k, sums) in sums.iter_mut().enumerate() {
+            let [column, row] = [corner[0] + k as u32 % TILE, corner[1] + k as u32 / TILE];
+            if column >= pixels[0] || row >= pixels[1] {
+                continue;
+            }
+            if interrupt.load(Ordering::Relaxed) {
+                *sums = PixelSums::UNSEEN;
+                left += 1;
+            } else {
+                brush.paint([column, row], sums);
+                done += 1;
+            }
+        }
+        killed.fetch_add(brush.path.killed, Ordering::Relaxed);
+        unseen.fetch_add(left, Ordering::Relaxed);
+        progress(done);
+    });
+    if pass.finishes {
+        sums.replicates += pass.replicates.len() as u32;
+    }
+    sums.sets = sets;
+    Ok(Rendered { unseen: unseen.into_inner(), killed: killed.into_inner() })
+}
+
+/// Renders pixels one after another.
+struct Brush<'a, const C: usize> {
+    view: &'a View<'a>,
+    pass: &'a Pass<'a, C>,
+    sets: u32,
+    samples_per_set: u32,
+    path: EyePath<'a, C>,
+}
+
+impl<'a, const C: usize> Brush<'a, C> {
+    fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32) -> Self {
+        let samples_per_set = view.spec.samples.div_ceil(sets);
+        let looks = Looks { emission: pass.emission, direct: pass.direct, densities: pass.densities };
+        let path = EyePath::new(view, looks, pass.replicates.end as usize);
+        Self { view, pass, sets, samples_per_set, path }
+    }
+
+    fn paint(&mut self, [column, row]: [u32; 2], sums: &mut PixelSums<C>) {
+        let seed = stream_key(self.view.seed, row, column, SALT);
+        let of_sample = 1.0 / (f64::from(self.sets) * f64::from(self.samples_per_set));
+        self.path.gathered.clear();
+        let mut before = [0.0; C];
+        for set in 0..self.sets {
+            let points = OwenPoints::with_coordinates(seed, set, NET_COORDINATES);
+            let mut found = [0.0; C];
+            for k in 0..self.samples_per_set {
+                let light = self.sample(&points, k, [column, row]);
+                (0..C).for_each(|c| found[c] += light[c]);
+            }
+            let gathered = self.path.gathered.value;
+            for c in 0..C {
+                found[c] += gathered[c] - before[c];
+                sums.value[c] += found[c] * of_sample;
+            }
+            before = gathered;
+            sums.by_set[set as usize] += (luminance_of(&found) / f64::from(self.samples_per_set)) as f32;
+        }
+        let gathered = &self.path.gathered;
+        sums.difference += (luminance_of(&gathered.second) - luminance_of(&gathered.value)) * of_sample;
+        sums.further_bias += gathered.nearest_bias * of_sample;
+        sums.sparse_square += (gathered.sparse * of_sample).powi(2);
+        if !self.pass.finishes {
+            sums.add_part(gathered.value.map(|v| v * of_sample));
+            return;
+        }
+        for replicate in self.pass.replicates.clone() {
+            sums.add_replicate(gathered.by_replicate[replicate as usize] * of_sample);
+        }
+    }
+
+    fn sample(&mut self, points: &OwenPoints, k: u32, [column, row]: [u32; 2]) -> [f64; 3] {
+        let mut chooser = Coordinates::new(points, u64::from(k), true);
+        let mut pair = || [(); 2].map(|()| chooser.uniform(Purpose::BeamPosition));
+        let [dx, dy] = filter::offset(self.view.spec.filter, pair());
+        let place = DVec2::new(f64::from(column) + 0.5 + dx, f64::from(row) + 0.5 + dy);
+        let pinhole = &self.view.pinhole;
+        let ray = if pinhole.has_lens() { pinhole.ray_by_lens(place, pair()) } else { pinhole.ray(place) };
+        self.path.look(ray, &mut chooser)
+    }
+}

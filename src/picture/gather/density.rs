@@ -1,0 +1,221 @@
+//! Density estimation: luminance from the photons about a point, with its spread over replicates and its bias.
+//!
+//! The luminance towards the eye is the sum over photons near of f(wi, wo) w photon_lm K(d), f the surface's BSDF, w the photon's
+//! weight and K a kernel of integral 1 over the part of the surface within the ball ([`crate::picture::gather::footprint`]). Photons arriving are
+//! flux per area already, so no cosine appears (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::geometry::{Geometry, Hit};
+use crate::picture::photon_map::PhotonMap;
+use crate::scene::camera::{Bandwidth, CameraSpec, Kernel};
+
+use crate::picture::gather::bandwidth;
+use crate::picture::gather::bandwidth::Chosen;
+use crate::picture::gather::footprint::Footprints;
+pub use crate::picture::gather::gathered::Gathered;
+use crate::picture::gather::sum::Point;
+use crate::picture::gather::surfaces::BySurface;
+
+/// The second bandwidth, in units of the first: twice the area.
+pub const SECOND: f64 = std::f64::consts::SQRT_2;
+
+/// What the difference between the two bandwidths is multiplied with for the bias of the narrower: exact for a bias that grows
+/// as the radius (at an edge), 1 / (sqrt 2 - 1); too large for one that grows as its square (where the density is smooth), 1.
+pub const BIAS_PER_DIFFERENCE: f64 = 1.0 / (SECOND - 1.0);
+
+/// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker: Progressive Photon
+/// Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
+pub const PROGRESSIVE_ALPHA: f64 = 2.0 / 3.0;
+
+/// Radius that photons are sorted for where fewer lie within the bandwidth's than are wanted, in units of this.
+const COARSE: f64 = 16.0;
+
+/// How densities are made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Choice {
+    /// Which photons count.
+    pub bandwidth: Bandwidth,
+    /// How they are weighted.
+    pub kernel: Kernel,
+    /// Replicates of the run.
+    pub replicates: u32,
+}
+
+impl Choice {
+    /// As a camera asks for it.
+    pub fn of(camera: &CameraSpec, replicates: u32) -> Self {
+        Self { bandwidth: camera.bandwidth, kernel: camera.kernel, replicates }
+    }
+}
+
+/// Which photons about a point count.
+#[derive(Debug)]
+enum Reach<const C: usize> {
+    /// All within this radius (m) by replicate; one entry where it is the same for all.
+    Radii(Vec<f64>),
+    /// All within the radius (m), but this many nearest at least.
+    AtLeast(f64, usize, BySurface<C>),
+    /// This many nearest.
+    Nearest(usize, BySurface<C>),
+}
+
+/// A photon map with a bandwidth.
+#[derive(Debug)]
+pub struct Density<'m, const C: usize> {
+    footprints: Arc<Footprints<'m>>,
+    map: &'m PhotonMap<C>,
+    /// Flux of one photon, lm.
+    photon_lm: f64,
+    kernel: Kernel,
+    reach: Reach<C>,
+    chosen: Option<Chosen>,
+}
+
+impl<'m, const C: usize> Density<'m, C> {
+    /// A density of this map; `photon_lm` is the flux of one photon, lm.
+    pub fn new(geometry: &'m Geometry, map: &'m PhotonMap<C>, photon_lm: f64, choice: Choice) -> Self {
+        Self::on(Arc::new(Footprints::new(geometry)), map, photon_lm, choice)
+    }
+
+    /// The same on surfaces that another density has prepared ([`Density::footprints`]).
+    pub fn on(
+        footprints: Arc<Footprints<'m>>,
+        map: &'m PhotonMap<C>,
+        photon_lm: f64,
+        choice: Choice,
+    ) -> Self {
+        let reach = match choice.bandwidth {
+            Bandwidth::Radius(radius_m) => Reach::Radii(vec![radius_m]),
+            Bandwidth::Progressive(radius_m) => Reach::Radii(progressive(radius_m, choice.replicates)),
+            Bandwidth::AtLeast { radius_m, neighbours } => {
+                let sorted = BySurface::new(&footprints, map, COARSE * radius_m);
+                Reach::AtLeast(radius_m, neighbours as usize, sorted)
+            }
+            Bandwidth::Nearest(k) => Reach::Nearest(k as usize, BySurface::new(&footprints, map, 0.0)),
+            Bandwidth::Automatic => {
+                let chosen = bandwidth::choose(&footprints, map, choice.kernel, choice.replicates, 1.0);
+                let choice = Choice { bandwidth: chosen.bandwidth(), ..choice };
+                return Self { chosen: Some(chosen), ..Self::on(footprints, map, photon_lm, choice) };
+            }
+        };
+        Self { footprints, map, photon_lm, kernel: choice.kernel, reach, chosen: None }
+    }
+
+    /// All photons within this radius, m.
+    pub fn fixed(geometry: &'m Geometry, map: &'m PhotonMap<C>, photon_lm: f64, radius_m: f64) -> Self {
+        let choice =
+            Choice { bandwidth: Bandwidth::Radius(radius_m), kernel: Kernel::default(), replicates: 1 };
+        Self::new(geometry, map, photon_lm, choice)
+    }
+
+    /// The surfaces as prepared for this density.
+    pub fn footprints(&self) -> Arc<Footprints<'m>> {
+        Arc::clone(&self.footprints)
+    }
+
+    /// What the automatic bandwidth was chosen by; `None` where the scene names one.
+    pub fn chosen(&self) -> Option<&Chosen> {
+        self.chosen.as_ref()
+    }
+
+    /// The (first) radius, m; `None` for k nearest.
+    pub fn radius_m(&self) -> Option<f64> {
+        match &self.reach {
+            Reach::Radii(radii) => radii.first().copied(),
+            Reach::AtLeast(radius_m, ..) => Some(*radius_m),
+            Reach::Nearest(..) => None,
+        }
+    }
+
+    /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel, arrived on the
+    /// front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered, and those for which it is 0 tell nothing
+    /// about an error. Where there are too few to tell one it is asked for light along the normal, too.
+    pub fn gather(
+        &self,
+        at: &Hit,
+        weight: [f64; C],
+        value_of: impl FnMut(DVec3, bool) -> [f64; C],
+        into: &mut Gathered<C>,
+    ) {
+        self.gather_of(None, at, weight, value_of, into);
+    }
+
+    /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen and 0 for other, times
+    /// `weight`: photons of the other side do not count as neighbours. A pixel's samples lie close together against a wide radius:
+    /// what was gathered for one, since `into` was last cleared, serves those within an eighth of the radius on the same side of the
+    /// same surface.
+    pub fn gather_evenly(&self, at: &Hit, weight: [f64; C], into: &mut Gathered<C>) {
+        let evenly = |_, _| [1.0; C];
+        let density = std::ptr::from_ref(self.map).addr();
+        let mut places = std::mem::take(&mut into.places);
+        if let Some(found) = places.near(density, at) {
+            into.add_weighted(found, weight);
+        } else if let Some(found) = places.remember(density, at, into.by_replicate.len()) {
+            // One room for all places: what a search needs is many times what it finds.
+            std::mem::swap(&mut into.room, &mut found.room);
+            self.gather_of(Some(at.front), at, [1.0; C], evenly, found);
+            std::mem::swap(&mut into.room, &mut found.room);
+            into.add_weighted(found, weight);
+        } else {
+            self.gather_of(Some(at.front), at, weight, evenly, into);
+        }
+        into.places = places;
+    }
+
+    /// Photons of one side, or (`None`) of both.
+    fn gather_of(
+        &self,
+        side: Option<bool>,
+        at: &Hit,
+        weight: [f64; C],
+        value_of: impl FnMut(DVec3, bool) -> [f64; C],
+        into: &mut Gathered<C>,
+    ) {
+        let mut point = Point {
+            map: self.map,
+            photon_lm: self.photon_lm,
+            kernel: self.kernel,
+            at,
+            footprint: self.footprints.at(at),
+            side,
+            weight,
+            value_of,
+        };
+        into.reach_m = self.narrowest_m();
+        let area_m2 = || self.footprints.geometry().surfaces()[at.surface.0 as usize].shape.area();
+        let found = match &self.reach {
+            Reach::Radii(radii) => point.sum_within(radii, into),
+            Reach::AtLeast(radius_m, least, _) if point.holds_at_least(*radius_m, *least) => {
+                point.sum_within(&[*radius_m], into)
+            }
+            Reach::AtLeast(radius_m, least, sorted) => {
+                point.sum_nearest(sorted, (*least, SECOND * radius_m), area_m2, into)
+            }
+            Reach::Nearest(k, sorted) => point.sum_nearest(sorted, (*k, 0.0), area_m2, into),
+        };
+        point.owe(found, into);
+    }
+
+    /// The narrowest radius, m; 0 where that is a matter of the neighbours.
+    fn narrowest_m(&self) -> f64 {
+        match &self.reach {
+            Reach::Radii(radii) => radii.iter().copied().fold(f64::INFINITY, f64::min),
+            Reach::AtLeast(radius_m, ..) => *radius_m,
+            Reach::Nearest(..) => 0.0,
+        }
+    }
+}
+
+/// The radius (m) of every replicate.
+fn progressive(radius_m: f64, replicates: u32) -> Vec<f64> {
+    let mut square = radius_m * radius_m;
+    let mut radii = Vec::with_capacity(replicates.min(1 << 16) as usize);
+    for i in 1..=replicates.clamp(1, 1 << 16) {
+        radii.push(square.sqrt());
+        square *= (f64::from(i) + PROGRESSIVE_ALPHA) / (f64::from(i) + 1.0);
+    }
+    radii
+}

@@ -1,0 +1,232 @@
+//! A run with a camera: receivers as without one, and the picture.
+//!
+//! By the photon map: photons are kept while there is room for them; what is kept is made into two densities, that of
+//! light that no surface scattered before (L S+ D) and that of all other, the camera adds what it sees of both to its sums,
+//! and the photons are dropped: a pass. By splatting: every arrival is joined to the pinhole while it is traced.
+//!
+//! What the picture stands for are the ranges of photons that were traced wholly: all of them, or after an interrupt
+//! those until then.
+
+pub mod photon_map;
+pub mod gather;
+pub mod camera;
+pub mod summary;
+pub mod passes;
+
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::scene_toml::source::sha256_hex;
+use crate::files::scene_toml::without_camera::without_camera;
+use crate::picture::camera::splat::Splat;
+use crate::picture::camera::{Film, View};
+use crate::picture::photon_map::{Channels, SavedMap};
+use crate::scene::Scene;
+use crate::scene::camera::{CameraSpec, Method};
+use crate::surface::{Grey, Rgb};
+
+use crate::run::{Outcome, Plan, trace_by};
+use passes::collector::Collector;
+pub use summary::{Chosen, PictureSummary};
+
+/// What a camera saw.
+#[derive(Debug)]
+pub struct Picture<const C: usize> {
+    /// Its pixels.
+    pub film: Film<C>,
+    /// How it was made, and how good it is.
+    pub summary: PictureSummary,
+    /// The photons it was made of, in a fixed order, where they were asked for.
+    pub photons: Option<SavedMap<C>>,
+}
+
+/// A picture in one channel or three.
+#[derive(Debug)]
+pub enum AnyPicture {
+    /// Luminance, of a scene without colour.
+    Grey(Picture<1>),
+    /// Linear sRGB whose Y is luminance.
+    Rgb(Picture<3>),
+}
+
+impl AnyPicture {
+    /// How it was made.
+    pub fn summary(&self) -> &PictureSummary {
+        match self {
+            Self::Grey(picture) => &picture.summary,
+            Self::Rgb(picture) => &picture.summary,
+        }
+    }
+}
+
+/// What a run does beside tracing.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Set from outside to stop.
+    pub interrupt: &'a AtomicBool,
+    /// Told numbers of photons as they are done.
+    pub photons: &'a (dyn Fn(u64) + Sync),
+    /// Told the part of the camera's work that is done in a pass, 0 to 1.
+    pub camera: &'a (dyn Fn(f64) + Sync),
+}
+
+/// What photons depend on: the scene but for its camera, the files it names, and the run's settings. Maps of other
+/// photons have another hash.
+pub fn hash_of_photons(scene: &Scene, plan: &Plan) -> String {
+    let mut all = format!("{}\n{}\n", env!("CARGO_PKG_VERSION"), settings_of(plan));
+    for (path, sha256) in &scene.identity.files {
+        all += &format!("{sha256} {path}\n");
+    }
+    all += &without_camera(&scene.identity.text);
+    sha256_hex(all.as_bytes())
+}
+
+/// The settings of a run in words.
+fn settings_of(plan: &Plan) -> String {
+    let algorithm = plan.algorithm;
+    let way = if algorithm.variant.rejects() { algorithm.rejection.name() } else { algorithm.solver.name() };
+    format!(
+        "{} {way} {} seed {} {} x {} photons",
+        algorithm.variant.name(),
+        algorithm.sequence.name(),
+        plan.seed,
+        plan.replicates,
+        plan.photons_per_replicate
+    )
+}
+
+/// The camera of a scene, for those who know that it has one.
+///
+/// # Errors
+/// A scene without.
+fn camera_of(scene: &Scene) -> Result<&CameraSpec> {
+    scene.camera.as_ref().ok_or_else(|| {
+        Diagnostic::new(Kind::Missing, "a scene without a camera", "a scene with [camera] for a picture")
+    })
+}
+
+/// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene without one passes.
+///
+/// # Errors
+/// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface); splatting through a lens: a splat meets a point.
+pub fn check(scene: &Scene) -> Result<()> {
+    let Some(spec) = &scene.camera else { return Ok(()) };
+    let splats = spec.method == Method::Splat;
+    if scene.is_coloured() {
+        check_memory::<3>(spec.pixels, splats)?;
+    } else {
+        check_memory::<1>(spec.pixels, splats)?;
+    }
+    View::new(scene, spec, 0)?;
+    if spec.method == Method::Splat && spec.lens_radius_m > 0.0 {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            format!("method \"splat\" and lens_radius = {}", spec.lens_radius_m),
+            "a pinhole (lens_radius = 0) where photons are joined to it",
+        )
+        .hint("method = \"map\" sees through a lens"));
+    }
+    Ok(())
+}
+
+fn check_memory<const C: usize>(pixels: [u32; 2], splats: bool) -> Result<()> {
+    if splats { Splat::<C>::check_memory(pixels) } else { Film::<C>::check_memory(pixels) }
+}
+
+/// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is that of
+/// [`crate::run::trace`]. With `keep` the picture's photons are handed out too.
+///
+/// # Errors
+/// Those of [`crate::run::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a surface); `keep` and more
+/// photons than the camera's memory holds.
+pub fn trace_picture(
+    scene: &Scene,
+    plan: &Plan,
+    keep: bool,
+    watch: Watch<'_>,
+) -> Result<(Outcome, AnyPicture)> {
+    let spec = camera_of(scene)?;
+    check(scene)?;
+    if scene.is_coloured() {
+        let (outcome, picture) = with_channels::<3, _>(scene, spec, plan, keep, watch, Rgb::WHITE)?;
+        Ok((outcome, AnyPicture::Rgb(picture)))
+    } else {
+        let (outcome, picture) = with_channels::<1, _>(scene, spec, plan, keep, watch, Grey)?;
+        Ok((outcome, AnyPicture::Grey(picture)))
+    }
+}
+
+fn with_channels<const C: usize, T: Channels<C>>(
+    scene: &Scene,
+    spec: &CameraSpec,
+    plan: &Plan,
+    keep: bool,
+    watch: Watch<'_>,
+    carried: T,
+) -> Result<(Outcome, Picture<C>)> {
+    match spec.method {
+        Method::Map => {
+            let mut collector = Collector::new(scene, spec, plan, keep, watch)?;
+            let outcome = trace_by(
+                scene,
+                plan,
+                |tracer, end, receivers| collector.stage(tracer, end, receivers, carried),
+                watch.interrupt,
+            )?;
+            Ok((outcome, collector.finish()?))
+        }
+        Method::Splat => passes::splat::trace(scene, spec, plan, watch, carried),
+    }
+}
+
+/// Whether a scene's camera can see photons that another run saved; told before anything is made of them.
+///
+/// # Errors
+/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have; more than the
+/// camera's memory holds.
+pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result<()> {
+    let spec = camera_of(scene)?;
+    check(scene)?;
+    if spec.method == Method::Splat {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            "method \"splat\" and photons from a file",
+            "method = \"map\": splatting joins photons to the pinhole while they are traced",
+        ));
+    }
+    let primitives = scene.geometry.primitive_count() as u64;
+    if saved.photons.iter().any(|p| u64::from(p.primitive) >= primitives) {
+        return Err(Diagnostic::new(
+            Kind::Range,
+            "photons on surfaces that this scene does not have",
+            "photons of the same scene",
+        ));
+    }
+    let (number, most) = (saved.photons.len(), passes::collector::capacity::<C>(spec));
+    if number > most {
+        let required = format!("at most {most}, for which the camera has memory");
+        return Err(Diagnostic::new(Kind::Limit, format!("{number} saved photons"), required)
+            .hint("a photon_memory_mb as large as that of the run that saved them"));
+    }
+    Ok(())
+}
+
+/// The picture of photons that another run of the same scene saved.
+///
+/// # Errors
+/// Those of [`check_saved`].
+pub fn picture_of_saved<const C: usize>(
+    scene: &Scene,
+    plan: &Plan,
+    saved: SavedMap<C>,
+    watch: Watch<'_>,
+) -> Result<Picture<C>> {
+    check_saved(scene, &saved)?;
+    let started = Instant::now();
+    let mut collector = Collector::new(scene, camera_of(scene)?, plan, false, watch)?;
+    collector.adopt(saved);
+    let mut picture = collector.finish()?;
+    picture.summary.time_s = started.elapsed().as_secs_f64();
+    Ok(picture)
+}

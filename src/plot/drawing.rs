@@ -1,0 +1,276 @@
+//! A drawing as a list of shapes, rendered alike to SVG and to pixels.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::error::Result;
+use crate::files::atomic::write_atomically;
+use crate::plot::canvas::{Anchor, Canvas, Colour, TextStyle, arc_points, dashes};
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pen {
+    /// Width in pixels.
+    pub width_px: f64,
+    /// Its colour.
+    pub colour: Colour,
+    /// Ink and gap in pixels; none for a solid line.
+    pub dash_px: Option<[f64; 2]>,
+}
+
+/// One shape; coordinates in pixels, x right and y down.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A chain of lines.
+    Polyline {
+        /// Its points.
+        points: Vec<[f64; 2]>,
+        /// How it is drawn.
+        pen: Pen,
+    },
+    /// An arc of a circle; angles in radians, from +x towards +y, less than a full turn or exactly one.
+    Arc {
+        /// Its centre.
+        centre: [f64; 2],
+        /// Its radius.
+        radius: f64,
+        /// First and last angle.
+        angles: [f64; 2],
+        /// How it is drawn.
+        pen: Pen,
+    },
+    /// A filled rectangle.
+    Rect {
+        /// x, y, width, height.
+        area: [f64; 4],
+        /// Its colour.
+        colour: Colour,
+    },
+    /// A small filled shape, such as a marker.
+    Polygon {
+        /// Its corners; where it covers itself twice it is empty.
+        corners: Vec<[f64; 2]>,
+        /// Its colour.
+        colour: Colour,
+    },
+    /// Upright text.
+    Text {
+        /// Where its anchor is, on the baseline.
+        at: [f64; 2],
+        /// The text.
+        text: String,
+        /// How it is drawn.
+        style: TextStyle,
+    },
+}
+
+/// A drawing on white.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    /// Width in pixels.
+    pub width: usize,
+    /// Height in pixels.
+    pub height: usize,
+    /// What is drawn, in this order.
+    pub shapes: Vec<Shape>,
+}
+
+impl Drawing {
+    /// The drawing in pixels.
+    pub fn to_canvas(&self) -> Canvas {
+        let mut canvas = Canvas::new(self.width, self.height, Colour::WHITE);
+        for shape in &self.shapes {
+            match shape {
+                Shape::Polyline { points, pen } => draw_chain(&mut canvas, points, pen),
+                Shape::Arc { centre, radius, angles, pen } => {
+                    draw_chain(&mut canvas, &arc_points(*centre, *radius, *angles), pen);
+                }
+                Shape::Rect { area, colour } => canvas.rect(*area, *colour),
+                Shape::Polygon { corners, colour } => canvas.polygon(corners, *colour),
+                Shape::Text { at, text, style } => canvas.text(*at, text, style),
+            }
+        }
+        canvas
+    }
+
+    /// The drawing as an SVG 1.1 document.
+    pub fn to_svg(&self) -> String {
+        let (width, height) = (self.width, self.height);
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\">\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+        );
+        for shape in &self.shapes {
+            write_shape(&mut svg, shape);
+        }
+        svg.push_str("</svg>\n");
+        svg
+    }
+
+    /// Writes the SVG file.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Io`] with the path.
+    pub fn write_svg(&self, path: impl AsRef<Path>) -> Result<()> {
+        write_atomically(path, |writer| std::io::Write::write_all(writer, self.to_svg().as_bytes()))
+    }
+}
+
+fn draw_chain(canvas: &mut Canvas, points: &[[f64; 2]], pen: &Pen) {
+    match pen.dash_px {
+        None => canvas.polyline(points, pen.width_px, pen.colour, 1.0),
+        Some(dash) => {
+            for piece in dashes(points, dash) {
+                canvas.polyline(&piece, pen.width_px, pen.colour, 1.0);
+            }
+        }
+    }
+}
+
+/// Writing to a `String` cannot fail, so its results are not looked at.
+fn write_shape(svg: &mut String, shape: &Shape) {
+    match shape {
+        Shape::Polyline { points, pen } => {
+            write!(svg, "<polyline points=\"{}\" {}/>", list(points), stroke(pen)).ok();
+        }
+        Shape::Arc { centre: [x, y], radius, angles: [from, to], pen } => {
+            if (to - from).abs() >= std::f64::consts::TAU * (1.0 - 1e-9) {
+                let (x, y, r) = (number(*x), number(*y), number(*radius));
+                write!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>", stroke(pen)).ok();
+            } else {
+                let end = |a: f64| {
+                    format!("{} {}", number(x + radius * libm::cos(a)), number(y + radius * libm::sin(a)))
+                };
+                let large = u8::from((to - from).abs() > std::f64::consts::PI);
+                let sweep = u8::from(to > from);
+                let (r, start, stop) = (number(*radius), end(*from), end(*to));
+                write!(svg, "<path d=\"M {start} A {r} {r} 0 {large} {sweep} {stop}\" {}/>", stroke(pen))
+                    .ok();
+            }
+        }
+        Shape::Rect { area, colour } => {
+            let [x, y, width, height] = area.map(number);
+            let fill = hex(*colour);
+            write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
+                .ok();
+        }
+        Shape::Polygon { corners, colour } => {
+            let (points, fill) = (list(corners), hex(*colour));
+            write!(svg, "<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>").ok();
+        }
+        Shape::Text { at, text, style } => {
+            let anchor = match style.anchor {
+                Anchor::Start => "start",
+                Anchor::Middle => "middle",
+                Anchor::End => "end",
+            };
+            let weight = if style.weight > 1.1 { " font-weight=\"bold\"" } else { "" };
+            let (x, y) = (number(at[0]), number(at[1]));
+            let (size, fill) = (number(style.size_px), hex(style.colour));
+            let text = escaped(text);
+            write!(
+                svg,
+                "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\"{weight} \
+                 fill=\"{fill}\" xml:space=\"preserve\">{text}</text>"
+            )
+            .ok();
+        }
+    }
+    svg.push('\n');
+}
+
+fn list(points: &[[f64; 2]]) -> String {
+    let pairs: Vec<String> = points.iter().map(|p| format!("{},{}", number(p[0]), number(p[1]))).collect();
+    pairs.join(" ")
+}
+
+fn stroke(pen: &Pen) -> String {
+    let dash = pen
+        .dash_px
+        .map_or(String::new(), |[on, off]| format!(" stroke-dasharray=\"{} {}\"", number(on), number(off)));
+    format!(
+        "fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"{dash}",
+        hex(pen.colour),
+        number(pen.width_px)
+    )
+}
+
+/// A coordinate to a hundredth of a pixel, without trailing zeros or a negative zero.
+fn number(value: f64) -> String {
+    let rounded = (value * 100.0).round() / 100.0;
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+fn hex(colour: Colour) -> String {
+    let [r, g, b] = colour.to_srgb();
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Text for an XML document; characters XML does not allow become U+FFFD.
+pub fn escaped(text: &str) -> String {
+    let mut result = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => result.push_str("&amp;"),
+            '<' => result.push_str("&lt;"),
+            '>' => result.push_str("&gt;"),
+            '"' => result.push_str("&quot;"),
+            '\'' => result.push_str("&#39;"),
+            '\u{0}'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => {
+                result.push('\u{fffd}');
+            }
+            other => result.push(other),
+        }
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_escaped_and_numbers_are_short() {
+        assert_eq!(escaped("a<b & \"c\"'\u{1}"), "a&lt;b &amp; &quot;c&quot;&#39;\u{fffd}");
+        assert_eq!(["0", "1.5", "-3.33"], [-0.001, 1.5, -3.333].map(number).each_ref().map(String::as_str));
+    }
+
+    #[test]
+    fn both_renderings_hold_the_same_shapes() {
+        let pen = Pen { width_px: 2.0, colour: Colour::srgb(200, 0, 0), dash_px: None };
+        let drawing = Drawing {
+            width: 60,
+            height: 40,
+            shapes: vec![
+                Shape::Rect { area: [0.0, 0.0, 10.0, 10.0], colour: Colour::BLACK },
+                Shape::Polyline { points: vec![[5.0, 20.0], [55.0, 20.0]], pen },
+                Shape::Arc { centre: [30.0, 20.0], radius: 10.0, angles: [0.0, 3.0], pen },
+                Shape::Polygon {
+                    corners: vec![[40.0, 0.0], [60.0, 0.0], [60.0, 20.0], [40.0, 20.0]],
+                    colour: Colour::srgb(0, 0, 200),
+                },
+                Shape::Text {
+                    at: [30.0, 39.0],
+                    text: "x < y".into(),
+                    style: TextStyle::new(11.0, Colour::BLACK),
+                },
+            ],
+        };
+        let svg = drawing.to_svg();
+        for part in [
+            "<polyline points=\"5,20 55,20\"",
+            "<polygon points=\"40,0 60,0",
+            "A 10 10 0 0 1",
+            "x &lt; y</text>",
+            "#c80000",
+        ] {
+            assert!(svg.contains(part), "{part} is not in {svg}");
+        }
+        let canvas = drawing.to_canvas();
+        assert_eq!(canvas.pixel(5, 5).to_srgb(), [0, 0, 0]);
+        assert_eq!(canvas.pixel(25, 20).to_srgb(), [200, 0, 0]);
+        assert_eq!(canvas.pixel(50, 5).to_srgb(), [0, 0, 200]);
+        assert_eq!(canvas.pixel(30, 29).to_srgb(), [200, 0, 0]);
+    }
+}

@@ -1,0 +1,418 @@
+//! A map of illuminance (or luminance) as a picture: false colours with a scale, axes in metres, isolux lines, the numbers a
+//! lighting engineer asks for first.
+
+use std::path::Path;
+
+use crate::error::Result;
+use crate::plot::canvas::{Anchor, Canvas, Colour, TextStyle};
+use crate::plot::colour_map;
+use crate::plot::colour_map::colour;
+use crate::plot::font;
+use crate::plot::isolux;
+use crate::plot::isolux::{Isolux, LABEL_SIZE_PX};
+use crate::plot::resample::area_average;
+use crate::plot::scale::{Axis, Scale, Tick, linear_ticks, three_digits};
+
+/// Maps below this on their longer side are magnified past it.
+const MAGNIFY_BELOW: usize = 700;
+/// Maps above this on their longer side are averaged down to it.
+const SHRINK_ABOVE: usize = 1200;
+/// However narrow a map, this much of it can be seen.
+const NARROWEST: usize = 48;
+/// Least height of the colour scale.
+const SHORTEST_BAR: usize = 200;
+/// Least width of the whole, for its text.
+const NARROWEST_PICTURE: usize = 560;
+
+const MARGIN: usize = 22;
+const TITLE_SIZE: f64 = 18.0;
+const TEXT_SIZE: f64 = 13.0;
+const TICK_SIZE: f64 = 12.0;
+const LINE_HEIGHT: usize = 20;
+const BAR_WIDTH: usize = 20;
+const BAR_GAP: usize = 26;
+const TICK_LENGTH: f64 = 5.0;
+
+/// What is shown of a map. A map whose values do not fit its sides is shown as one without values.
+#[derive(Debug, Clone)]
+pub struct FalseColour<'a> {
+    /// Headline: the receiver's name.
+    pub title: &'a str,
+    /// Cells along u.
+    pub width: usize,
+    /// Cells along v.
+    pub height: usize,
+    /// What the values are.
+    pub quantity: Quantity,
+    /// Values in the quantity's unit, `width` x `height`, the row of the largest v first; NaN and infinities are "no value".
+    pub values: &'a [f64],
+    /// Sides along u and v in metres; without it the axes run from 0 to 1.
+    pub size_m: Option<[f64; 2]>,
+    /// The scale of the colours.
+    pub scale: Scale,
+    /// Whether to draw isolux lines.
+    pub isolux: bool,
+    /// Lines of text under the picture.
+    pub footer: Vec<String>,
+}
+
+/// What is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Illuminance on a surface, lx.
+    Illuminance,
+    /// Luminance of a picture, cd/m2: it has no (u, v) axes, and uniformity means nothing.
+    Luminance,
+}
+
+impl Quantity {
+    /// Its unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Illuminance => "lx",
+            Self::Luminance => "cd/m2",
+        }
+    }
+}
+
+/// Where things are, in pixels.
+struct Layout {
+    /// x, y, width, height of the map.
+    map: [usize; 4],
+    /// x, y, width, height of the colour scale.
+    bar: [usize; 4],
+    /// Top of the first line of the footer.
+    footer_y: usize,
+    size: [usize; 2],
+}
+
+impl FalseColour<'_> {
+    /// Draws the picture.
+    pub fn render(&self) -> Canvas {
+        match self.checked() {
+            Some(cells) => self.render_cells(self.values, cells),
+            None => self.render_cells(&[f64::NAN], [1, 1]),
+        }
+    }
+
+    /// Draws the picture into a PNG file.
+    ///
+    /// # Errors
+    /// [`crate::error::Kind::Io`] with the path.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
+        self.render().write_png(path)
+    }
+
+    /// Where the map and the colour scale lie in the picture: x, y, width, height in pixels of each.
+    pub fn areas(&self) -> [[usize; 4]; 2] {
+        let (values, cells) = match self.checked() {
+            Some(cells) => (self.values, cells),
+            None => (&[f64::NAN][..], [1, 1]),
+        };
+        let labels = bar_labels(&Axis::fit_map(values, cells, self.scale));
+        let layout = self.layout(display_size(cells, self.size_m), &labels);
+        [layout.map, layout.bar]
+    }
+
+    fn checked(&self) -> Option<[usize; 2]> {
+        let fits = self.width > 0
+            && self.height > 0
+            && self.width.checked_mul(self.height) == Some(self.values.len());
+        fits.then_some([self.width, self.height])
+    }
+
+    fn render_cells(&self, values: &[f64], cells: [usize; 2]) -> Canvas {
+        let axis = Axis::fit_map(values, cells, self.scale);
+        let display = display_size(cells, self.size_m);
+        let lines = if self.isolux { isolux::isolux(values, cells, display, &axis) } else { no_lines() };
+        let labels = bar_labels(&axis);
+        let text = self.footer_text(values, &lines);
+        let mut layout = self.layout(display, &labels);
+        let footer = wrapped(&text, (layout.size[0] - 2 * MARGIN) as f64);
+        layout.size[1] = layout.footer_y + footer.len() * LINE_HEIGHT + MARGIN - 8;
+
+        let mut canvas = Canvas::new(layout.size[0], layout.size[1], Colour::WHITE);
+        self.draw_title(&mut canvas);
+        draw_map(&mut canvas, values, cells, &layout, &axis);
+        draw_lines(&mut canvas, &layout, &axis, &lines);
+        self.draw_axes(&mut canvas, &layout);
+        draw_bar(&mut canvas, &layout, &axis, &labels, self.quantity);
+        for (i, line) in footer.iter().enumerate() {
+            let y = layout.footer_y + (i + 1) * LINE_HEIGHT - 6;
+            canvas.text([MARGIN as f64, y as f64], line, &TextStyle::new(TEXT_SIZE, ink()));
+        }
+        canvas
+    }
+
+    fn layout(&self, display: [usize; 2], labels: &[(f64, String)]) -> Layout {
+        let (_, v_ticks) = self.axis_ticks(display);
+        let left = MARGIN + widest(v_ticks.iter().map(|t| t.label.as_str())) + 34;
+        let top = MARGIN + 36;
+        let map = [left, top, display[0], display[1]];
+        let bar_x = left + display[0] + BAR_GAP;
+        let bar = [bar_x, top, BAR_WIDTH, display[1].max(SHORTEST_BAR)];
+        let label_room = widest(labels.iter().map(|(_, l)| l.as_str())).max(16) + 12;
+        let right = bar_x + BAR_WIDTH + label_room + MARGIN;
+        let below = (top + display[1] + 48).max(top + bar[3] + 14);
+        Layout { map, bar, footer_y: below + 6, size: [right.max(NARROWEST_PICTURE), 0] }
+    }
+
+    fn sides(&self) -> [f64; 2] {
+        valid_size(self.size_m).unwrap_or([1.0, 1.0])
+    }
+
+    fn axis_ticks(&self, display: [usize; 2]) -> (Vec<Tick>, Vec<Tick>) {
+        let count = |pixels: usize, room: usize| (pixels / room).clamp(1, 8);
+        let [u, v] = self.sides();
+        (linear_ticks(0.0, u, count(display[0], 90)), linear_ticks(0.0, v, count(display[1], 70)))
+    }
+
+    fn draw_title(&self, canvas: &mut Canvas) {
+        let room = (canvas.width() - 2 * MARGIN) as f64;
+        let mut size = TITLE_SIZE;
+        while size > 13.0 && font::width_px(self.title, size, true) > room {
+            size -= 1.0;
+        }
+        let title = shortened(self.title, size, room);
+        let style = TextStyle::new(size, Colour::grey(20)).weighing(1.25);
+        canvas.text([MARGIN as f64, (MARGIN + 16) as f64], &title, &style);
+    }
+
+    fn draw_axes(&self, canvas: &mut Canvas, layout: &Layout) {
+        let [x, y, width, height] = layout.map.map(|p| p as f64);
+        frame(canvas, layout.map);
+        if self.quantity == Quantity::Luminance {
+            return;
+        }
+        let [u, v] = self.sides();
+        let (u_ticks, v_ticks) = self.axis_ticks([layout.map[2], layout.map[3]]);
+        let style = TextStyle::new(TICK_SIZE, ink());
+        let mut free_from = f64::NEG_INFINITY;
+        for tick in &u_ticks {
+            let at = crisp(x + tick.value / u * width);
+            canvas.line([at, y + height + 1.0], [at, y + height + TICK_LENGTH], 1.0, ink());
+            let half = 0.5 * font::width_px(&tick.label, TICK_SIZE, true);
+            // On a narrow map the numbers would run into each other.
+            if at - half > free_from {
+                let place = [at, y + height + TICK_LENGTH + 14.0];
+                canvas.text(place, &tick.label, &style.anchored(Anchor::Middle));
+                free_from = at + half + 6.0;
+            }
+        }
+        for tick in &v_ticks {
+            let at = crisp(y + height - tick.value / v * height);
+            canvas.line([x - 1.0, at], [x - TICK_LENGTH, at], 1.0, ink());
+            canvas.text([x - TICK_LENGTH - 5.0, at + 4.0], &tick.label, &style.anchored(Anchor::End));
+        }
+        let unit = if valid_size(self.size_m).is_some() { " [m]" } else { "" };
+        let name = TextStyle::new(TEXT_SIZE, ink()).anchored(Anchor::Middle);
+        canvas.text([x + 0.5 * width, y + height + TICK_LENGTH + 33.0], &format!("u{unit}"), &name);
+        let beside = [MARGIN as f64 + 10.0, y + 0.5 * height];
+        canvas.text_rotated(beside, -std::f64::consts::FRAC_PI_2, &format!("v{unit}"), &name);
+    }
+
+    fn footer_text(&self, values: &[f64], lines: &Isolux) -> Vec<String> {
+        let mut text = vec![statistics_line(values, self.quantity)];
+        let empty = values.iter().filter(|v| !v.is_finite()).count();
+        if empty > 0 {
+            text.push(format!("grey: no value ({empty} of {} cells)", values.len()));
+        }
+        if lines.smoothing > 0.0 {
+            let [u, v] = self.sides();
+            let width = if valid_size(self.size_m).is_some() {
+                format!("{} mm", three_digits(1e3 * lines.smoothing * u.max(v)))
+            } else {
+                format!("{} % of the side", three_digits(100.0 * lines.smoothing))
+            };
+            text.push(format!("isolux lines: of the map smoothed by a Gaussian, standard deviation {width}"));
+        }
+        text.extend(self.footer.iter().cloned());
+        text
+    }
+}
+
+/// Minimum, mean, maximum and uniformity of the cells that have a value.
+fn statistics_line(values: &[f64], quantity: Quantity) -> String {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let count = finite().count();
+    if count == 0 {
+        return "no values".to_owned();
+    }
+    let min = finite().fold(f64::INFINITY, f64::min);
+    let max = finite().fold(f64::NEG_INFINITY, f64::max);
+    let mean = finite().map(|v| v / count as f64).sum::<f64>();
+    let uniformity = if mean > 0.0 { three_digits(min / mean) } else { "-".to_owned() };
+    let [min, mean, max] = [min, mean, max].map(three_digits);
+    let unit = quantity.unit();
+    let line = format!("min {min} {unit}    mean {mean} {unit}    max {max} {unit}");
+    match quantity {
+        Quantity::Illuminance => format!("{line}    uniformity U0 = min/mean = {uniformity}"),
+        Quantity::Luminance => line,
+    }
+}
+
+/// Pixels on which a map of so many cells is shown; cells become squares, or follow `size_m`.
+pub fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
+    let longest = cells[0].max(cells[1]).max(1);
+    let factor = MAGNIFY_BELOW.div_ceil(longest).min(SHRINK_ABOVE / longest).max(1);
+    let side = (longest * factor).min(SHRINK_ABOVE);
+    let aspect = |[a, b]: [f64; 2]| a / b;
+    let grid = aspect([cells[0] as f64, cells[1] as f64]);
+    let wanted = valid_size(size_m).map_or(grid, aspect);
+    let square = (wanted / grid - 1.0).abs() < 1e-3;
+    let shape = if square && longest <= SHRINK_ABOVE {
+        [cells[0] * factor, cells[1] * factor]
+    } else if wanted >= 1.0 {
+        [side, (side as f64 / wanted).round() as usize]
+    } else {
+        [(side as f64 * wanted).round() as usize, side]
+    };
+    shape.map(|pixels| pixels.max(NARROWEST))
+}
+
+fn valid_size(size_m: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    size_m.filter(|size| size.iter().all(|s| s.is_finite() && *s > 0.0) && (size[0] / size[1]).is_normal())
+}
+
+fn no_lines() -> Isolux {
+    Isolux { lines: Vec::new(), smoothing: 0.0 }
+}
+
+fn ink() -> Colour {
+    Colour::grey(50)
+}
+
+/// The colour of a value on a scale.
+pub fn value_colour(value: f64, axis: &Axis) -> Colour {
+    if value.is_finite() { colour(axis.place(value)) } else { colour_map::no_value() }
+}
+
+fn draw_map(canvas: &mut Canvas, values: &[f64], cells: [usize; 2], layout: &Layout, axis: &Axis) {
+    let [left, top, width, height] = layout.map;
+    let shown = area_average(values, cells, [width, height]);
+    for (i, &value) in shown.iter().enumerate() {
+        canvas.set_pixel(left + i % width, top + i / width, value_colour(value, axis));
+    }
+}
+
+fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux) {
+    let [left, top, width, height] = layout.map;
+    let shift = |p: &[f64; 2]| [p[0] + left as f64, p[1] + top as f64];
+    canvas.clipped([left, top, left + width, top + height], |canvas| {
+        for line in &isolux.lines {
+            let contrast = line_colour(axis.place(line.tick.value));
+            for piece in &line.pieces {
+                let points: Vec<_> = piece.iter().map(shift).collect();
+                canvas.polyline(&points, 1.0, contrast, 0.9);
+            }
+        }
+        for line in &isolux.lines {
+            let Some(label) = line.label else { continue };
+            let place = axis.place(line.tick.value);
+            // The baseline lies half a digit below the line.
+            let drop = 0.35 * LABEL_SIZE_PX;
+            let centre = shift(&label.centre);
+            let at = [centre[0] - drop * libm::sin(label.angle), centre[1] + drop * libm::cos(label.angle)];
+            let style = TextStyle::new(LABEL_SIZE_PX, colour(place)).anchored(Anchor::Middle);
+            canvas.text_halo(at, label.angle, &line.tick.label, &style, 1.8);
+            let style = TextStyle { colour: line_colour(place), ..style };
+            canvas.text_rotated(at, label.angle, &line.tick.label, &style);
+        }
+    });
+}
+
+/// White on dark colours, black on light ones.
+fn line_colour(place: f64) -> Colour {
+    if colour_map::lightness(place) < 0.62 { Colour::WHITE } else { Colour::BLACK }
+}
+
+/// Place from foot (0) to top (1) and text of the marks of the colour scale, foot first.
+fn bar_labels(axis: &Axis) -> Vec<(f64, String)> {
+    let mut labels: Vec<(f64, String)> =
+        axis.ticks.iter().map(|t| (axis.place(t.value), t.label.clone())).collect();
+    if let Some(first) = labels.first_mut().filter(|_| axis.clipped_below) {
+        first.1 = format!("< {}", first.1);
+    }
+    if let Some(last) = labels.last_mut().filter(|_| axis.clipped_above) {
+        last.1 = format!("> {}", last.1);
+    }
+    labels
+}
+
+fn draw_bar(canvas: &mut Canvas, layout: &Layout, axis: &Axis, labels: &[(f64, String)], quantity: Quantity) {
+    let [left, top, width, height] = layout.bar;
+    for row in 0..height {
+        let t = 1.0 - (row as f64 + 0.5) / height as f64;
+        canvas.rect([left as f64, (top + row) as f64, width as f64, 1.0], colour(t));
+    }
+    frame(canvas, layout.bar);
+    let [x, y] = [(left + width) as f64, top as f64];
+    let mut free_below = f64::INFINITY;
+    for (place, label) in labels {
+        let at = crisp(y + (1.0 - place) * height as f64);
+        canvas.line([x + 1.0, at], [x + TICK_LENGTH, at], 1.0, ink());
+        // On a short scale the numbers would run into each other.
+        if at < free_below {
+            canvas.text([x + TICK_LENGTH + 5.0, at + 4.0], label, &TextStyle::new(TICK_SIZE, ink()));
+            free_below = at - TICK_SIZE - 2.0;
+        }
+    }
+    let unit = quantity.unit();
+    let unit = if axis.log { format!("{unit} (log)") } else { unit.to_owned() };
+    canvas.text([left as f64, y - 12.0], &unit, &TextStyle::new(TEXT_SIZE, ink()));
+}
+
+/// A line of one pixel around a rectangle.
+fn frame(canvas: &mut Canvas, [x, y, width, height]: [usize; 4]) {
+    let [x, y, width, height] = [x as f64, y as f64, width as f64, height as f64];
+    canvas.rect([x - 1.0, y - 1.0, width + 2.0, 1.0], ink());
+    canvas.rect([x - 1.0, y + height, width + 2.0, 1.0], ink());
+    canvas.rect([x - 1.0, y, 1.0, height], ink());
+    canvas.rect([x + width, y, 1.0, height], ink());
+}
+
+/// The pixel centre at or before a coordinate, where a line of one pixel is sharp.
+fn crisp(x: f64) -> f64 {
+    (x - 0.5).round() + 0.5
+}
+
+fn widest<'a>(labels: impl Iterator<Item = &'a str>) -> usize {
+    labels.map(|l| font::width_px(l, TICK_SIZE, true).ceil() as usize).max().unwrap_or(0)
+}
+
+/// The text, or as much of it as fits the room with "..." at its end.
+fn shortened(text: &str, size_px: f64, room_px: f64) -> String {
+    if font::width_px(text, size_px, true) <= room_px {
+        return text.to_owned();
+    }
+    let mut short = String::new();
+    for c in text.chars() {
+        if font::width_px(&format!("{short}{c}..."), size_px, true) > room_px {
+            break;
+        }
+        short.push(c);
+    }
+    short + "..."
+}
+
+/// Lines broken between words so that they fit the room.
+fn wrapped(lines: &[String], room_px: f64) -> Vec<String> {
+    let mut result = Vec::new();
+    for line in lines {
+        if font::width_px(line, TEXT_SIZE, true) <= room_px {
+            result.push(line.clone());
+            continue;
+        }
+        let mut current = String::new();
+        for word in line.split_whitespace() {
+            let longer = if current.is_empty() { word.to_owned() } else { format!("{current} {word}") };
+            if font::width_px(&longer, TEXT_SIZE, true) <= room_px || current.is_empty() {
+                current = longer;
+            } else {
+                result.push(std::mem::replace(&mut current, word.to_owned()));
+            }
+        }
+        result.push(current);
+    }
+    result.iter().map(|line| shortened(line, TEXT_SIZE, room_px)).collect()
+}
