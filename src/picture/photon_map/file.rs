@@ -263,7 +263,7 @@ impl<'b> Reader<'b> {
     }
 
     fn vector(&mut self) -> Result<DVec3> {
-        let mut number = || Ok(f64::from_le_bytes(self.take()?));
+        let mut number = || -> Result<f64> { Ok(f64::from_le_bytes(self.take()?)) };
         Ok(DVec3::new(number()?, number()?, number()?))
     }
 

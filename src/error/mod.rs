@@ -4,11 +4,15 @@
 //! required, and, where there is something to say, what to do. Warnings are diagnostics too: they are kept in
 //! lists and returned, never printed by the library.
 
+pub mod invalid;
+
 use std::fmt;
 use std::path::Path;
 
+pub use invalid::Invalid;
+
 /// Result of everything in this library that can fail on data.
-pub type Result<T> = std::result::Result<T, Diagnostic>;
+pub type Result<T, E = Diagnostic> = std::result::Result<T, E>;
 
 /// What sort of rule was broken; the class a caller can match on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
