@@ -1,0 +1,11 @@
+//! The command as a user types it.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bsdf;
+mod contract;
+mod picture;
+mod results_kept;
+mod sample;

@@ -1,0 +1,11 @@
+//! What studies and certificates say, and whether it is right.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod account;
+mod certificate;
+mod compare_report;
+mod compare_resume;
+mod room;
