@@ -11,10 +11,10 @@ use caustix::scene::source::Base;
 use caustix::scene::{Scene, build, file};
 use caustix::sequence::independent::IndependentPoints;
 use glam::DVec3;
-use std::path::Path;
 
 use crate::support::angles::Luminaire;
 use crate::support::data;
+use crate::support::data::project;
 use crate::support::density::Density;
 use crate::support::statistics::{sidak, z_test};
 
@@ -232,7 +232,7 @@ fn scene(name: &str, frame: &str) -> Scene {
          corner = [-1.0, -1.0, 0.0]\nedge_u = [2.0, 0.0, 0.0]\nedge_v = [0.0, 2.0, 0.0]\n\
          [[receiver]]\nsurface = \"plate\"\ncells = [4, 4]\n"
     );
-    let base = Base::Directory(Path::new(env!("CARGO_MANIFEST_DIR")).join("ies"));
+    let base = Base::Directory(project().join("ies"));
     build::build(&file::parse(&text, "frame.toml", base).unwrap()).unwrap()
 }
 
@@ -265,7 +265,7 @@ fn without_aim_and_up_a_lamp_hangs() {
 
 /// Cells of the rows of docs/PHOTOMETRIC_FRAME.md that begin with a file's name and have this many cells.
 fn rows_of_the_page(cells: usize) -> Vec<Vec<String>> {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/PHOTOMETRIC_FRAME.md");
+    let page = project().join("docs/PHOTOMETRIC_FRAME.md");
     let text = std::fs::read_to_string(page).unwrap();
     let rows = text.lines().filter(|line| line.starts_with("| `"));
     let split =

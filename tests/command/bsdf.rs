@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 
+use crate::support::data::project;
 use crate::support::stranger::Stranger;
 
 /// A surface that reflects and transmits; f falls linearly (times cosine) from its value at the pole to 0 at 90 degrees, so
@@ -157,7 +157,7 @@ fn too_much_light_colour_and_missing_symmetry_are_told() {
 #[test]
 fn own_tables_conserve_energy_and_plot() {
     let s = Stranger::with(&[]);
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("brdf_tables");
+    let folder = project().join("brdf_tables");
     let mut count = 0;
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

@@ -1,45 +1,10 @@
-//! The command as a stranger types it: exit codes, messages, what is written, and the names that other programs rely on.
+//! The command as a stranger types it: exit codes and messages.
 
-use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
-use serde_json::Value;
-
+use crate::absorber::SCENE;
+use crate::support::data::in_project;
 use crate::support::stranger::Stranger;
-
-fn project(path: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path).display().to_string()
-}
-
-fn keys(value: &Value) -> BTreeSet<&str> {
-    value.as_object().unwrap().keys().map(String::as_str).collect()
-}
-
-/// Exactly these keys: those of the contract, and the ones added to it.
-fn assert_keys(value: &Value, contract: &[&str], added: &[&str]) {
-    assert_eq!(keys(value), contract.iter().chain(added).copied().collect::<BTreeSet<_>>());
-}
-
-const ABSORBER_SCENE: &str = r#"
-[[emitter]]
-type = "isotropic"
-position = [0.0, 0.0, 1.0]
-flux_lm = 100
-[material.black]
-type = "absorber"
-[[surface]]
-name = "plate"
-type = "rectangle"
-material = "black"
-corner = [-1.0, -1.0, 0.0]
-edge_u = [2.0, 0.0, 0.0]
-edge_v = [0.0, 2.0, 0.0]
-[[receiver]]
-surface = "plate"
-cells = [4, 4]
-"#;
 
 #[test]
 fn what_is_not_built_yet_says_so_and_exits_2() {
@@ -83,7 +48,7 @@ fn wrong_usage_exits_2_and_help_and_version_exit_0() {
 #[test]
 fn photons_are_saved_and_seen_again_by_a_camera_alone() {
     let s = Stranger::new();
-    fs::write(s.path("plate.toml"), ABSORBER_SCENE).unwrap();
+    fs::write(s.path("plate.toml"), SCENE).unwrap();
     s.is_told("render plate.toml --map old.map", 1, &["--map", "without [camera]", "a scene with a camera"]);
     s.is_told("render plate.toml --save-map new.map", 1, &["--save-map", "without [camera]"]);
     s.is_told("render plate.toml --save-map new.map --map old.map", 2, &["error:", "cannot be used with"]);
@@ -119,7 +84,7 @@ fn impossible_requests_exit_1_and_say_what_is_required() {
 #[test]
 fn numbers_are_read_as_people_write_them() {
     let s = Stranger::new();
-    fs::write(s.path("scene.toml"), ABSORBER_SCENE).unwrap();
+    fs::write(s.path("scene.toml"), SCENE).unwrap();
     for (text, photons) in [("4_456_448", 4_456_448u64), ("4.5e6", 4_500_000), ("2^22", 4_194_304)] {
         let (code, out, err) = s.types(&format!("render scene.toml -o out --photons {text}"));
         assert_eq!(code, 0, "{err}");
@@ -134,11 +99,11 @@ fn numbers_are_read_as_people_write_them() {
 #[test]
 fn broken_files_are_named_with_line_and_column() {
     let s = Stranger::new();
-    let whole = fs::read_to_string(project("ies/spot.ies")).unwrap();
+    let whole = fs::read_to_string(in_project("ies/spot.ies")).unwrap();
     fs::write(s.path("word.ies"), whole.replace("\r\n12000", "\r\nbright")).unwrap();
     let cut = whole.trim_end().rsplit_once(|c: char| c.is_whitespace()).unwrap().0;
     fs::write(s.path("cut.ies"), cut).unwrap();
-    fs::write(s.path("scene.toml"), ABSORBER_SCENE.replace("flux_lm", "flux")).unwrap();
+    fs::write(s.path("scene.toml"), SCENE.replace("flux_lm", "flux")).unwrap();
     fs::write(s.path("broken.toml"), "[[emitter]\n").unwrap();
     for (line, place) in [
         ("photometry word.ies", "word.ies:"),
@@ -155,7 +120,7 @@ fn broken_files_are_named_with_line_and_column() {
         assert!(numbers.len() == 2 && numbers.iter().all(|n| *n > 0), "{err}");
     }
     // A scene's file that is missing is named where the scene names it.
-    let scene = ABSORBER_SCENE.replace("\"isotropic\"", "\"photometric\"\nfile = \"gone.ies\"");
+    let scene = SCENE.replace("\"isotropic\"", "\"photometric\"\nfile = \"gone.ies\"");
     fs::write(s.path("scene.toml"), scene).unwrap();
     s.is_told("check scene.toml", 1, &["scene.toml:4:8: found", "gone.ies"]);
 }
@@ -194,294 +159,9 @@ fn an_output_that_cannot_be_written_is_refused_before_tracing() {
             &["file", "required: a directory for the results"],
         );
     }
-    s.is_told(&format!("photometry {} --plot p.jpg", project("ies/spot.ies")), 1, &["p.jpg", ".svg or .png"]);
-}
-
-#[test]
-fn photometry_json_has_the_keys_of_the_contract() {
-    let s = Stranger::new();
-    let (code, out, err) = s.types(&format!("photometry {} --json", project("ies/headlamp_a.ies")));
-    assert_eq!((code, err.as_str()), (0, ""));
-    let json: Value = serde_json::from_str(&out).unwrap();
-    let contract = [
-        "format",
-        "revision",
-        "photometric_type",
-        "flux_lm",
-        "flux_declared_lm",
-        "max_candela",
-        "max_at",
-        "vertical_angles",
-        "horizontal_angles",
-        "symmetry",
-        "luminous_opening",
-        "beam_angle_deg",
-        "field_angle_deg",
-        "input_watts",
-        "efficacy_lm_w",
-        "warnings",
-        "flux_with_factors_lm",
-        "flux_emitted_lm",
-    ];
-    assert_keys(&json, &contract, &[]);
-    assert_keys(&json["max_at"], &["vertical_deg", "horizontal_deg"], &[]);
-    assert_keys(&json["luminous_opening"], &["shape", "size_m"], &[]);
-    // The table of ies/README.md, computed outside the project.
-    assert!((json["flux_lm"].as_f64().unwrap() - 735.360528).abs() < 1e-6);
-    assert_eq!(json["max_candela"], 19965.37);
-}
-
-#[test]
-fn a_diagram_is_what_its_name_says() {
-    let s = Stranger::new();
-    for (name, magic) in [("p.svg", &b"<svg"[..]), ("p.png", &b"\x89PNG\r\n\x1a\n"[..])] {
-        let (code, _, err) = s.types(&format!("photometry {} --plot {name}", project("ies/batwing.ies")));
-        assert_eq!((code, err.as_str()), (0, ""));
-        let bytes = fs::read(s.path(name)).unwrap();
-        let head = &bytes[..bytes.len().min(200)];
-        assert!(head.windows(magic.len()).any(|w| w == magic), "{name}");
-    }
-}
-
-#[test]
-fn check_json_has_the_keys_of_the_contract() {
-    let s = Stranger::new();
-    let contract = ["ok", "requires", "surfaces", "emitters", "memory_mb", "warnings", "errors"];
-    let (code, out, _) = s.types("check --json");
-    let json: Value = serde_json::from_str(&out).unwrap();
-    assert_eq!((code, &json["ok"]), (0, &Value::Bool(true)));
-    assert_keys(&json, &contract, &["receivers"]);
-    assert_keys(&json["surfaces"][0], &["name", "triangles", "open_edges"], &["closed", "area_m2"]);
-    assert_keys(&json["emitters"][0], &["name", "flux_emitted_lm"], &[]);
-    // 128 x 128 cells of two triangles; the rim of an open sheet of 128 x 128 has 512 edges.
-    assert_eq!(
-        (&json["surfaces"][0]["triangles"], &json["surfaces"][0]["open_edges"]),
-        (&32768.into(), &512.into())
+    s.is_told(
+        &format!("photometry {} --plot p.jpg", in_project("ies/spot.ies")),
+        1,
+        &["p.jpg", ".svg or .png"],
     );
-
-    fs::write(s.path("scene.toml"), ABSORBER_SCENE.replace("flux_lm", "flux")).unwrap();
-    let (code, out, _) = s.types("check --json scene.toml");
-    let json: Value = serde_json::from_str(&out).unwrap();
-    assert_eq!((code, &json["ok"]), (1, &Value::Bool(false)));
-    assert_keys(&json, &contract, &["receivers"]);
-    let error = json["errors"].as_array().unwrap().iter().find(|e| e["line"] == 5).unwrap();
-    assert_keys(error, &["file", "line", "column", "found", "required"], &[]);
-    assert_eq!((&error["file"], &error["column"]), (&"scene.toml".into(), &1.into()));
-
-    // A scene that is not there has a name all the same, but no line.
-    let (code, out, _) = s.types("check --json nowhere.toml");
-    let json: Value = serde_json::from_str(&out).unwrap();
-    assert_eq!((code, json["errors"].as_array().unwrap().len()), (1, 1));
-    let error = &json["errors"][0];
-    assert_eq!((&error["file"], &error["line"]), (&"nowhere.toml".into(), &Value::Null));
-}
-
-#[test]
-fn a_report_has_the_keys_of_the_contract_and_balances() {
-    let s = Stranger::new();
-    let (code, out, err) = s.types("render --photons 2^14 --quiet");
-    assert_eq!((code, out.as_str(), err.as_str()), (0, "", ""));
-    let report = s.report("caustix-out");
-    assert_keys(
-        &report,
-        &[
-            "caustix",
-            "scene",
-            "variant",
-            "sequence",
-            "seed",
-            "photons",
-            "replicates",
-            "time",
-            "ledger_lm",
-            "dimension",
-            "receivers",
-            "stopped_by",
-        ],
-        &["photons_planned", "solver", "standard_error_absent", "ledger_photons", "exceptions", "warnings"],
-    );
-    assert_keys(&report["scene"], &["path", "sha256"], &["files"]);
-    assert_keys(&report["time"], &["trace_s", "total_s", "photons_per_s"], &[]);
-    let ledger = &report["ledger_lm"];
-    assert_keys(ledger, &["emitted", "absorbed", "escaped", "killed"], &["standard_error"]);
-    assert_keys(&report["dimension"], &["mean", "max"], &["histogram", "mean_by_purpose"]);
-    assert_keys(
-        &report["receivers"][0],
-        &[
-            "name",
-            "flux_lm",
-            "flux_standard_error_lm",
-            "min_lx",
-            "mean_lx",
-            "max_lx",
-            "uniformity_u0",
-            "area_m2",
-            "cells",
-        ],
-        &["expected_nrms", "files"],
-    );
-    let sum = |v: &Value| v.as_object().unwrap().values().map(|x| x.as_f64().unwrap()).sum::<f64>();
-    let lm = |key: &str| ledger[key].as_f64().unwrap();
-    let ended = sum(&ledger["absorbed"]) + lm("escaped") + lm("killed");
-    // What the file emits was computed outside the project.
-    let table = fs::read_to_string(project("ies/README.md")).unwrap();
-    let row = table.lines().find(|l| l.starts_with("| `wavy_glass.ies`")).unwrap();
-    let expected: f64 = row.split('|').nth(3).unwrap().trim().parse().unwrap();
-    assert!((lm("emitted") - expected).abs() < 1e-5, "{} {expected}", lm("emitted"));
-    assert!((ended - lm("emitted")).abs() < 1e-9 * ended);
-    let photons = &report["ledger_photons"];
-    let ended = sum(&photons["absorbed"])
-        + photons["escaped"].as_f64().unwrap()
-        + photons["killed"].as_f64().unwrap();
-    assert_eq!((sum(&photons["emitted"]), ended), (16384.0, 16384.0));
-    assert_eq!(report["stopped_by"], "photons");
-}
-
-/// Bytes of a file as text where they are printable: the attributes' names and texts stand in it as they are.
-fn readable(path: &Path) -> String {
-    fs::read(path).unwrap().iter().map(|b| if (32..127).contains(b) { *b as char } else { '\n' }).collect()
-}
-
-#[test]
-fn an_exr_says_how_to_repeat_the_run_and_nothing_else() {
-    let s = Stranger::new();
-    fs::write(s.path("scene.toml"), ABSORBER_SCENE).unwrap();
-    fs::create_dir(s.path("elsewhere")).unwrap();
-    fs::write(s.path("elsewhere/renamed.toml"), ABSORBER_SCENE).unwrap();
-    for line in [
-        "render scene.toml -o a --photons 4096 --threads 1",
-        "render elsewhere/renamed.toml -o b --photons 4096 --threads 3",
-    ] {
-        let (code, _, err) = s.types(line);
-        assert_eq!(code, 0, "{err}");
-    }
-    // Another time, path, folder and number of threads: the same bytes.
-    assert_eq!(fs::read(s.path("a/plate.exr")).unwrap(), fs::read(s.path("b/plate.exr")).unwrap());
-    let text = readable(&s.path("a/plate.exr"));
-    for name in [
-        "illuminance",
-        "standard_error",
-        "hits",
-        "caustix.version",
-        "caustix.unit.illuminance",
-        "caustix.variant",
-        "caustix.sequence",
-        "caustix.seed",
-        "caustix.photons",
-        "caustix.replicates",
-        "caustix.scene.sha256",
-        "caustix.scene.text",
-    ] {
-        assert!(text.lines().any(|l| l.contains(name)), "{name}");
-    }
-    let folder = s.folder().display().to_string();
-    for word in [folder.as_str(), "scene.toml", "thread", "capDate", "utcOffset", "elapsed"] {
-        assert!(!text.contains(word), "the EXR names {word}");
-    }
-}
-
-/// Copies a folder with all that is in it.
-fn copied(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let target = to.join(entry.file_name());
-        if entry.file_type().unwrap().is_dir() {
-            copied(&entry.path(), &target);
-        } else {
-            fs::copy(entry.path(), target).unwrap();
-        }
-    }
-}
-
-/// A picture of 24 x 16 pixels where the scene has a camera: it is written all the same.
-fn with_few_pixels(scene: &Path) {
-    let text = fs::read_to_string(scene).unwrap();
-    let lines =
-        text.lines().map(|line| if line.starts_with("pixels = ") { "pixels = [24, 16]" } else { line });
-    fs::write(scene, lines.collect::<Vec<_>>().join("\n")).unwrap();
-}
-
-#[test]
-fn every_scene_passes_check_without_warnings_and_lights_every_receiver() {
-    let s = Stranger::new();
-    for folder in ["scenes", "ies", "brdf_tables"] {
-        copied(Path::new(&project(folder)), &s.path(folder));
-    }
-    let mut scenes: Vec<PathBuf> =
-        fs::read_dir(s.path("scenes")).unwrap().map(|e| e.unwrap().path()).collect();
-    scenes.retain(|p| p.extension().is_some_and(|e| e == "toml"));
-    scenes.sort();
-    assert!(scenes.len() >= 6);
-    for scene in scenes {
-        with_few_pixels(&scene);
-        let (code, out, _) = s.types(&format!("check --json {}", scene.display()));
-        let check: Value = serde_json::from_str(&out).unwrap();
-        assert_eq!((code, check["warnings"].as_array().unwrap().len()), (0, 0), "{out}");
-        assert!(!check["receivers"].as_array().unwrap().is_empty(), "{}", scene.display());
-        let (code, _, err) = s.types(&format!("render {} -o out --photons 2^13 --quiet", scene.display()));
-        assert_eq!((code, err.as_str()), (0, ""), "{}", scene.display());
-        for receiver in s.report("out")["receivers"].as_array().unwrap() {
-            assert!(receiver["flux_lm"].as_f64().unwrap() > 0.0, "{}: {receiver}", scene.display());
-            for file in receiver["files"].as_array().unwrap() {
-                assert!(fs::metadata(s.path("out").join(file.as_str().unwrap())).unwrap().len() > 0);
-            }
-        }
-    }
-}
-
-#[cfg(unix)]
-mod interrupts {
-    use super::*;
-    use std::process::{Child, Stdio};
-    use std::time::Duration;
-
-    /// Starts a run that would take years, and interrupts it after a second and a half.
-    fn interrupted(s: &Stranger, line: &str) -> (i32, String, String) {
-        let child: Child = s.command(line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        std::thread::sleep(Duration::from_millis(1500));
-        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-        assert!(sent.success());
-        let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (status.code().unwrap(), text(stdout), text(stderr))
-    }
-
-    #[test]
-    fn an_interrupted_run_writes_what_there_is_and_says_so() {
-        let s = Stranger::new();
-        fs::write(s.path("scene.toml"), ABSORBER_SCENE).unwrap();
-        let (code, out, err) = interrupted(&s, "render scene.toml -o out --photons 2^45");
-        assert_eq!(code, 130, "{out}{err}");
-        assert!(err.contains("interrupted after") && err.contains("was written to out"), "{err}");
-        let report = s.report("out");
-        assert_eq!(report["stopped_by"], "interrupt");
-        let photons = report["photons"].as_u64().unwrap();
-        assert!(photons > 0 && photons < 1 << 45);
-        assert_eq!(report["ledger_photons"]["emitted"]["emitter 1"], photons);
-        assert!(s.path("out/plate.exr").is_file() && s.path("out/plate.png").is_file());
-        // A plate of 2 m seen from 1 m above its centre takes 1/6 of an isotropic lamp's light: a face of a cube.
-        let flux = report["receivers"][0]["flux_lm"].as_f64().unwrap();
-        let sigma = 100.0 * (1.0 / 6.0 * (5.0 / 6.0) / photons as f64).sqrt();
-        assert!((flux - 100.0 / 6.0).abs() < 5.0 * sigma, "{flux} lm of {photons} photons");
-    }
-
-    #[test]
-    fn an_interrupted_run_leaves_the_results_of_a_longer_one() {
-        let s = Stranger::new();
-        fs::write(s.path("scene.toml"), ABSORBER_SCENE).unwrap();
-        let (code, _, err) = s.types("render scene.toml -o out --photons 2^14 --quiet");
-        assert_eq!(code, 0, "{err}");
-        // As a run of years would have left it.
-        let path = s.path("out/report.json");
-        let longer =
-            fs::read_to_string(&path).unwrap().replace("\"photons\": 16384", "\"photons\": 281474976710656");
-        fs::write(&path, &longer).unwrap();
-        let map = fs::read(s.path("out/plate.exr")).unwrap();
-        let (code, _, err) = interrupted(&s, "render scene.toml -o out --photons 2^45 --seed 2");
-        assert_eq!(code, 130, "{err}");
-        assert_eq!(fs::read_to_string(&path).unwrap(), longer);
-        assert_eq!(fs::read(s.path("out/plate.exr")).unwrap(), map);
-        assert_eq!(s.report("out/interrupted")["stopped_by"], "interrupt");
-    }
 }

@@ -4,8 +4,12 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod absorber;
 mod bsdf;
 mod contract;
+#[cfg(unix)]
+mod interrupts;
+mod outputs;
 mod picture;
 mod results_kept;
 mod sample;

@@ -7,16 +7,11 @@ use caustix::estimate::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
 use caustix::estimate::footprint::Footprints;
 use caustix::geometry::{Geometry, Hit, Rectangle, Shape, Surface, Whereabouts};
 use caustix::scene::camera::{Bandwidth, Kernel};
-use caustix::sequence::hash::mix64;
 use caustix::tally::photon_map::record::{FRONT, pack};
 use caustix::tally::photon_map::{Frame, Photon, PhotonMap};
 use glam::DVec3;
 
-/// Numbers in [0, 1) without pattern.
-fn u(i: u64, salt: u64) -> f64 {
-    (mix64(mix64(i.wrapping_add(1)) ^ mix64(salt.wrapping_mul(0x9e37_79b9).wrapping_add(7))) >> 11) as f64
-        / (1u64 << 53) as f64
-}
+use crate::photons::{frame_of, u};
 
 /// The unit square at z = 0, its front up, and as many more above it.
 fn sheets(count: u32) -> Geometry {
@@ -28,11 +23,6 @@ fn sheets(count: u32) -> Geometry {
         }
     };
     Geometry::build((0..count).map(sheet).collect()).unwrap()
-}
-
-fn frame_of(geometry: &Geometry) -> Frame {
-    let (low, high) = geometry.bounds();
-    Frame::new(low, high)
 }
 
 /// The middle of the lowest sheet, from its front or from behind.

@@ -11,6 +11,7 @@ mod make_brdf;
 #[path = "../../examples/make_ies.rs"]
 mod make_ies;
 
+mod broken_scene;
 mod damage;
 mod photometry_damaged;
 mod photometry_own;
@@ -26,4 +27,5 @@ mod scene_damaged;
 mod scene_errors;
 mod scene_limits;
 mod scene_own;
+mod scene_shape_errors;
 mod scene_tabulated;

@@ -1,12 +1,13 @@
 //! The project's own photometric files: what the formulas give is what is on disk, and what the README states.
 
 use caustix::photometry::{PhotometricType, Summary, lm63};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::make_ies;
+use crate::support::data::project;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("ies")
+    project().join("ies")
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! Damaged scattering files: a table or a diagnostic, never a panic, a hang or memory beyond the caps.
 
 use caustix::scattering::{self, integral::slice_albedo, reciprocity};
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::damage::Damage;
+use crate::support::data::project;
 use crate::support::random::Generator;
 use crate::support::scatter_files;
 
@@ -124,8 +124,7 @@ fn thousands_of_mutations_are_tables_or_diagnostics() {
         println!("{name}: {read} read, {refused} refused");
         assert!(read > 50 && refused > 500, "{name}: the mutations reach both ends: {read}, {refused}");
     }
-    let opal =
-        std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("brdf_tables/phong.scatter")).unwrap();
+    let opal = std::fs::read(project().join("brdf_tables/phong.scatter")).unwrap();
     for _ in 0..300 {
         survives(&DAMAGE.mutate(&opal, &mut generator), "phong.scatter", false);
     }

@@ -5,13 +5,14 @@ use caustix::scattering::integral::slice_albedo;
 use caustix::scattering::value::value;
 use caustix::scattering::{self, Quantity};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use crate::support::data::project;
 use crate::support::tables::incidence;
 
 /// The project's own tables, and real ones where they are at hand.
 fn files() -> Vec<PathBuf> {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("brdf_tables");
+    let own = project().join("brdf_tables");
     let mut list: Vec<PathBuf> = std::fs::read_dir(own).unwrap().map(|e| e.unwrap().path()).collect();
     list.retain(|p| p.extension().is_some_and(|e| e == "scatter"));
     list.sort();

@@ -6,13 +6,14 @@ use caustix::scattering::value::value;
 use caustix::scattering::{self, Frame, LobeData, LobeSide, Quantity, ScatterTable};
 use glam::DVec3;
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::make_brdf;
+use crate::support::data::project;
 use crate::support::quadrature::Gauss;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("brdf_tables")
+    project().join("brdf_tables")
 }
 
 fn read(file: &str) -> ScatterTable {

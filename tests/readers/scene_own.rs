@@ -1,6 +1,6 @@
 //! The scenes of this project: read without a warning, and light does reach their receivers.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use caustix::bsdf::Reflectance;
 use caustix::error::Kind;
@@ -12,8 +12,10 @@ use caustix::scene::file::{parse, read};
 use caustix::scene::source::Base;
 use glam::DVec3;
 
+use crate::support::data::project;
+
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
+    project().join("scenes")
 }
 
 fn scene(name: &str) -> Description {

@@ -5,7 +5,6 @@
 
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
 
 use caustix::bsdf::tabulated::{Energy, Sides};
 use caustix::error::{Diagnostic, Kind};
@@ -20,6 +19,7 @@ use caustix::sequence::Sequence;
 use glam::DVec3;
 use tempfile::TempDir;
 
+use crate::support::data::project;
 use crate::support::judge::assert_total;
 use crate::support::scenes::run;
 
@@ -210,7 +210,7 @@ fn a_closed_cover_lets_out_what_its_table_says() {
     let (r, t) = (0.55, 0.3);
     let lobes = even("reflection", "both", r) + &even("transmission", "both", t);
     let desk = Desk::new(&[("opal.scatter", lobes)]);
-    let lantern = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/opal_cover.obj");
+    let lantern = project().join("scenes/opal_cover.obj");
     fs::copy(lantern, desk.folder.path().join("cover.obj")).unwrap();
     for shape in [
         "type = \"sphere\"\ncenter = [0, 0, 0.3]\nradius = 0.5",

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use caustix::scattering;
 
+use crate::support::data::project;
 use crate::support::statistics::sidak;
 use crate::table_checks::{
     Surface, below_horizon, incidences_of, integrals_agree, inverse_returns, jacobians_add_up,
@@ -69,7 +70,7 @@ fn surfaces_of(folder: &Path, below: &Path) -> (Vec<Surface>, Vec<String>) {
 
 #[test]
 fn own_tables_hold() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("brdf_tables");
+    let folder = project().join("brdf_tables");
     let (surfaces, others) = surfaces_of(&folder, &folder);
     // Seven tables, one of them with two different sides; beside them the README.
     assert_eq!((surfaces.len(), others.len()), (8, 1), "{others:?}");

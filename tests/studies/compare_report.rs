@@ -1,4 +1,4 @@
-//! What a study says and how it is shown, from made-up studies whose laws, ratios and limits are known.
+//! How a study is shown and kept, from made-up studies whose laws, ratios and limits are known.
 
 use caustix::image::canvas::Anchor;
 use caustix::image::drawing::Shape;
@@ -10,181 +10,10 @@ use caustix::report::compare::text::{WIDTH, text};
 use caustix::report::compare::write_files;
 use caustix::study::fit::Uncertainty;
 use caustix::study::norms::Errors;
-use caustix::study::results::{Account, Reference, Run, Study, VariantResult};
+use caustix::study::results::Study;
 use caustix::study::table::Table;
 
-/// A number of [0, 1) for an index (SplitMix64's finaliser).
-fn uniform(index: u64) -> f64 {
-    let mut z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-/// About normal, mean 0, deviation 1: twelve uniforms less six.
-fn normal(index: u64) -> f64 {
-    (0..12).map(|i| uniform(12 * index + i)).sum::<f64>() - 6.0
-}
-
-const ASKED: u64 = 4_456_448;
-const GRIDS: [u32; 3] = [48, 128, 256];
-
-/// nRMS = `at_asked` on 48 x 48 cells at N = [`ASKED`], (N / ASKED)^rate of it elsewhere, 3 and 7 times on finer grids.
-struct Law {
-    name: &'static str,
-    at_asked: f64,
-    rate: f64,
-    cpu_s_per_photon: f64,
-}
-
-const LAWS: [Law; 4] = [
-    Law { name: "mc", at_asked: 0.025, rate: -0.5, cpu_s_per_photon: 1e-6 },
-    Law { name: "qmc", at_asked: 0.0105, rate: -0.6, cpu_s_per_photon: 1e-6 },
-    Law { name: "qmc-inverse", at_asked: 0.0046, rate: -0.7, cpu_s_per_photon: 1.25e-6 },
-    Law { name: "qmc-inverse-reuse", at_asked: 0.0033, rate: -0.75, cpu_s_per_photon: 1.25e-6 },
-];
-
-fn grid_factor(grid: usize) -> f64 {
-    [1.0, 3.0, 7.0][grid]
-}
-
-/// The laws with so much noise, relative, on every error.
-fn study(ladder: &[u64], seeds: u64, noise: f64) -> Study {
-    let variant = |(v, law): (usize, &Law)| {
-        let run = |seed: u64, photons: u64| {
-            let errors = (0..GRIDS.len()).map(|grid| {
-                let shaken = 1.0
-                    + noise
-                        * normal((v as u64 * 1000 + seed) * 1000 + photons.ilog2() as u64 * 4 + grid as u64);
-                let nrms = law.at_asked
-                    * grid_factor(grid)
-                    * (photons as f64 / ASKED as f64).powf(law.rate)
-                    * shaken;
-                Errors { relative_rms: 0.5 * nrms, nrms, relative_l1: 0.25 * nrms }
-            });
-            Run {
-                seed,
-                photons,
-                cpu_s: law.cpu_s_per_photon * photons as f64,
-                coordinates_mean: [8.2, 8.2, 5.0, 3.0][v],
-                coordinates_max: [131, 131, 9, 5][v],
-                errors: errors.collect(),
-            }
-        };
-        VariantResult {
-            name: law.name.into(),
-            description: "rejection, retries from the next coordinates".into(),
-            runs: (1..=seeds).flat_map(|seed| ladder.iter().map(move |&n| run(seed, n))).collect(),
-            account: Some(Account { by_event: 8.2, equation_4: 6.9, equation_6: 3.9 }),
-        }
-    };
-    let largest = ladder.iter().copied().max().unwrap_or(1);
-    Study {
-        caustix_version: "0.1.0".into(),
-        scene_name: "wavy_glass".into(),
-        scene_sha256: "0123456789abcdef".into(),
-        built_in: true,
-        command: "caustix compare --photons 4_456_448".into(),
-        receivers: vec!["plate".into()],
-        grids: GRIDS.into(),
-        asked_photons: ASKED,
-        ladder: ladder.into(),
-        seeds: (1..=seeds).collect(),
-        threads: 2,
-        reference: Reference {
-            photons: 100 * largest,
-            replicates: 16,
-            sequence: "halton-rotation".into(),
-            emission_map: "directions uniform in solid angle, weighted by intensity".into(),
-            seed: 20_011,
-            own_nrms: vec![0.000_16, 0.000_44, 0.000_9],
-            factor: 100.0,
-        },
-        variants: LAWS.iter().enumerate().map(variant).collect(),
-        warnings: vec![],
-    }
-}
-
-fn ladder() -> Vec<u64> {
-    let mut ladder: Vec<u64> = (14..=22).map(|k| 1 << k).collect();
-    ladder.push(ASKED);
-    ladder
-}
-
-fn close(a: f64, b: f64) -> bool {
-    (a / b - 1.0).abs() < 1e-12
-}
-
-#[test]
-fn rates_are_found_within_their_standard_errors() {
-    let table = Table::new(&study(&ladder(), 8, 0.05));
-    let mut squares = 0.0;
-    for (v, law) in LAWS.iter().enumerate() {
-        for trend in &table.trends[v] {
-            let found = trend.law.unwrap();
-            let standard_error = found.rate_standard_error.unwrap();
-            let z = (found.rate - law.rate) / standard_error;
-            squares += z * z;
-            assert_eq!(found.uncertainty, Uncertainty::Seeds);
-            // Noise of 5 % on nine levels an octave apart: 0.05 / sqrt(60 ln(2)^2) a seed, over sqrt(8).
-            let expected = 0.05 / (60.0_f64.sqrt() * std::f64::consts::LN_2) / 8.0_f64.sqrt();
-            assert!(
-                standard_error > 0.3 * expected && standard_error < 2.0 * expected,
-                "{standard_error} {expected}"
-            );
-            // Student's t with 7 degrees passes 5.9 once in 1700, here among 12.
-            assert!(z.abs() < 5.9, "{} {z}", law.name);
-        }
-    }
-    // Twelve t-variables of 7 degrees: their squares' mean is 7/5 with deviation 0.9.
-    assert!((0.3..4.1).contains(&(squares / 12.0)), "{}", squares / 12.0);
-}
-
-#[test]
-fn ratios_are_those_computed_by_hand() {
-    let table = Table::new(&study(&ladder(), 2, 0.0));
-    for (v, law) in LAWS.iter().enumerate() {
-        for (g, _) in GRIDS.iter().enumerate() {
-            let row = table.row(v, ASKED, g).unwrap();
-            assert!(close(row.errors.nrms, law.at_asked * grid_factor(g)));
-            assert!(close(row.errors.relative_rms, 0.5 * row.errors.nrms));
-            assert!(close(row.errors.relative_l1, 0.25 * row.errors.nrms));
-            assert!(row.nrms_spread.unwrap() < 1e-15);
-            assert!(close(row.ratio_equal_n.unwrap(), 0.025 / law.at_asked));
-            // In its time mc traces so many times the photons, at the rate -1/2.
-            let more = law.cpu_s_per_photon / LAWS[0].cpu_s_per_photon;
-            let at_equal_time = row.ratio_equal_time.unwrap();
-            assert!(close(at_equal_time.value, 0.025 / law.at_asked / more.sqrt()), "{at_equal_time:?}");
-            assert_eq!(at_equal_time.extrapolated, more > 1.0, "mc was not measured beyond the N asked for");
-            assert!(close(table.photons_per_cpu_s[v].unwrap(), 1.0 / law.cpu_s_per_photon));
-            // e = 1 % at N = ASKED (e0 / 1 %)^(1 / -rate).
-            let photons = ASKED as f64 * (row.errors.nrms / 0.01).powf(-1.0 / law.rate);
-            let time = table.trends[v][g].time_to_target.unwrap();
-            assert!(close(time.value, photons * law.cpu_s_per_photon), "{time:?}");
-            assert_eq!(time.extrapolated, photons > ASKED as f64);
-        }
-    }
-    // At 2^20, qmc-inverse-reuse takes the time of 1.25 x 2^20 photons of mc: measured, not extrapolated.
-    let row = table.row(3, 1 << 20, 0).unwrap();
-    assert!(!row.ratio_equal_time.unwrap().extrapolated);
-}
-
-#[test]
-fn errors_over_seeds_are_root_mean_squares_and_their_spread() {
-    let mut study = study(&[1 << 20], 2, 0.0);
-    for (run, nrms) in study.variants[0].runs.iter_mut().zip([0.03, 0.04]) {
-        run.errors[0] = Errors { relative_rms: 2.0 * nrms, nrms, relative_l1: nrms };
-        run.cpu_s = 100.0 * nrms;
-        run.coordinates_mean = 200.0 * nrms;
-    }
-    let table = Table::new(&study);
-    let row = table.row(0, 1 << 20, 0).unwrap();
-    assert!(close(row.errors.nrms, 0.001_25_f64.sqrt()));
-    assert!(close(row.errors.relative_rms, 2.0 * 0.001_25_f64.sqrt()));
-    assert!(close(row.errors.relative_l1, 0.035));
-    assert!(close(row.nrms_spread.unwrap(), 0.01 / 2.0_f64.sqrt()));
-    assert!(close(row.cpu_s, 3.5) && close(row.coordinates, 7.0));
-}
+use crate::made_up::{ASKED, GRIDS, ladder, study};
 
 #[test]
 fn csv_reads_back_as_the_table() {
@@ -255,17 +84,6 @@ fn what_is_unknown_is_empty() {
         run.cpu_s = 0.0;
     }
     assert!(all(field(&timeless, "photons_per_s"), true));
-}
-
-#[test]
-fn the_asked_number_is_measured_but_no_part_of_the_law() {
-    let mut study = study(&ladder(), 3, 0.0);
-    for run in study.variants[3].runs.iter_mut().filter(|run| run.photons == ASKED) {
-        run.errors[0].nrms *= 1.09;
-    }
-    let table = Table::new(&study);
-    assert!((table.trends[3][0].law.unwrap().rate + 0.75).abs() < 1e-12);
-    assert!(close(table.row(3, ASKED, 0).unwrap().errors.nrms, 1.09 * 0.0033));
 }
 
 #[test]

@@ -6,6 +6,8 @@ mod support;
 
 mod account;
 mod certificate;
+mod compare_numbers;
 mod compare_report;
 mod compare_resume;
+mod made_up;
 mod room;

@@ -7,6 +7,11 @@ pub fn project() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// The path of one of its files, for a command's line.
+pub fn in_project(path: &str) -> String {
+    project().join(path).display().to_string()
+}
+
 /// The folder of real files; `None` where CAUSTIX_TEST_DATA is not set. Either way a line says so, by which `.ci/run` counts the
 /// tests that read real files and those that skipped: so all of them come here.
 pub fn real_folder() -> Option<PathBuf> {
