@@ -45,26 +45,63 @@
 //! # }
 //! ```
 
-pub mod error;
-pub mod units;
-pub mod math;
-pub mod sequence;
-pub mod sample;
-pub mod photometry;
-pub mod scattering;
-pub mod geometry;
-pub mod surface;
-pub mod emitter;
-pub mod scene;
-pub mod transport;
-pub mod tally;
-pub mod estimate;
-pub mod run;
-pub mod picture;
-pub mod lab;
-pub mod files;
-pub mod plot;
-pub mod report;
-pub mod cli;
+// In import order: a room uses only rooms before it (tests/house checks).
+#[path = "."]
+mod rooms {
+    pub mod error;
+    pub mod units;
+    pub mod math;
+    pub mod sequence;
+    pub mod sample;
+    pub mod photometry;
+    pub mod scattering;
+    pub mod geometry;
+    pub mod surface;
+    pub mod emitter;
+    pub mod scene;
+    pub mod transport;
+    pub mod tally;
+    pub mod estimate;
+    pub mod run;
+    pub mod picture;
+    pub mod lab;
+    pub mod files;
+    pub mod plot;
+    pub mod report;
+    pub mod cli;
+}
 
-pub use error::{Diagnostic, Result};
+// Private. The feature `internals` opens them to this package's own tests, benches and examples, and to nobody else.
+#[cfg(not(feature = "internals"))]
+use rooms::*;
+#[cfg(feature = "internals")]
+pub use rooms::*;
+
+// The door. Errors and warnings:
+pub use error::{Diagnostic, Invalid, Kind, Result};
+// Photometric files:
+pub use files::lm63::{parse as parse_photometry, read as read_photometry};
+pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt, Web};
+// Scattering tables:
+pub use files::bsdf::{parse as parse_scattering, read as read_scattering};
+pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
+// Scenes:
+pub use emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
+pub use geometry::{
+    Facing, Formula, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing, Sphere,
+    Surface, Transform, Wave, box_mesh,
+};
+pub use scene::{Scene, SceneParts};
+pub use surface::{Bsdf, Dielectric, Reflectance, Tabulated};
+// Runs:
+pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace};
+pub use sequence::Sequence;
+// Results:
+pub use run::{Estimate, Outcome};
+pub use transport::{Census, Ledger};
+// Pictures:
+pub use picture::{AnyPicture, Picture, PictureSummary, Watch, trace_picture};
+
+/// The command `caustix`, with the arguments of the process.
+#[doc(hidden)]
+pub use cli::main as command;
