@@ -154,7 +154,7 @@ fn say_rounding(asked: Option<u64>, plan: &Plan) {
             "caustix: {} photons instead of {}: {} replicates of equal size",
             text::grouped(plan.photons()),
             text::grouped(asked),
-            plan.replicates
+            plan.replicates()
         ));
     }
 }

@@ -15,7 +15,7 @@ use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
 use crate::surface::{Bsdf, Tabulated};
 
 use crate::files::scene_toml::description::Place;
-use camera::CameraSpec;
+use camera::Camera;
 use receiver::{Receiver, ReceiverSpec};
 
 /// What a run needs to be repeated, beside its settings: the scene and the hashes of the files it names.
@@ -45,7 +45,7 @@ pub struct Scene {
     /// The fixed number of reflections of `[compare]`, where the scene names one.
     pub compared_reflections: Option<u32>,
     /// The camera, where the scene has one.
-    pub camera: Option<CameraSpec>,
+    pub camera: Option<Camera>,
     /// Where it comes from.
     pub identity: Identity,
     /// What is allowed but probably not meant.
@@ -69,7 +69,7 @@ pub struct SceneParts {
     /// The fixed number of reflections of `[compare]`, if there is one.
     pub compared_reflections: Option<u32>,
     /// The camera, if there is one.
-    pub camera: Option<CameraSpec>,
+    pub camera: Option<Camera>,
     /// Where the scene comes from; empty for one made in code.
     pub identity: Identity,
     /// Warnings so far.

@@ -6,14 +6,9 @@ use crate::error::Kind;
 use crate::files::scene_toml::description::CameraDescription;
 use crate::files::scene_toml::toml_table::{Interval, Table};
 use crate::files::scene_toml::{COORDINATE, DIRECTION, LENGTH, orthogonal_part, unit};
-use crate::scene::camera::{Bandwidth, CameraSpec, Exposure, Filter, Kernel, Method};
-
-/// Most pixels: 2^26, an image of 8192 x 8192.
-pub const MOST_PIXELS: u64 = 1 << 26;
-/// Most eye paths a pixel.
-const MOST_SAMPLES: u64 = 1 << 16;
-/// Most neighbours of a density estimate.
-const MOST_NEAREST: u64 = 1 << 20;
+use crate::scene::camera::{
+    Bandwidth, Camera, CameraSpec, Exposure, Filter, Kernel, MOST_NEAREST, MOST_PIXELS, MOST_SAMPLES, Method,
+};
 
 const FOV: Interval = Interval { low: 1e-3, high: 179.0, words: "an angle from 0.001 to 179 degrees" };
 const LENS: Interval = Interval { low: 0.0, high: 1e9, words: "a radius from 0 (a pinhole) to 1e9 m" };
@@ -57,28 +52,30 @@ pub(crate) fn read(mut table: Table<'_, '_>) -> Option<CameraDescription> {
     let false_colour = table.truth("false_colour");
     let memory_mb = table.number("photon_memory_mb", &MEMORY_MB);
     if method == Some(Method::Splat) {
-        check_splat(&table, lens_radius_m);
+        warn_of_the_map(&table);
     }
+    let camera = view.zip(fov_deg).zip(pixels).map(|(((position, look_at, up), fov_deg), pixels)| {
+        let default = CameraSpec::pinhole(position, look_at, up, fov_deg, pixels);
+        Camera::new(CameraSpec {
+            samples: samples.unwrap_or(default.samples),
+            lens_radius_m: lens_radius_m.unwrap_or(default.lens_radius_m),
+            focus_m: focus_m.unwrap_or(default.focus_m),
+            filter: filter.unwrap_or_default(),
+            method: method.unwrap_or_default(),
+            bandwidth,
+            kernel: kernel.unwrap_or_default(),
+            background_cd_m2: background.map_or([0.0; 3], |b| b.to_array()),
+            exposure: exposure.unwrap_or_default(),
+            filmic: filmic.unwrap_or(false),
+            false_colour: false_colour.unwrap_or(false),
+            photon_memory_bytes: memory_mb.map_or(default.photon_memory_bytes, |mb| (mb * 1e6) as u64),
+            ..default
+        })
+    });
+    let spec =
+        camera.and_then(|camera| camera.map_err(|e| table.error(e.what(), Kind::Range, &e.required())).ok());
     table.finish();
-
-    let (position, look_at, up) = view?;
-    let default = CameraSpec::pinhole(position, look_at, up, fov_deg?, pixels?);
-    let spec = CameraSpec {
-        samples: samples.unwrap_or(default.samples),
-        lens_radius_m: lens_radius_m.unwrap_or(default.lens_radius_m),
-        focus_m: focus_m.unwrap_or(default.focus_m),
-        filter: filter.unwrap_or_default(),
-        method: method.unwrap_or_default(),
-        bandwidth,
-        kernel: kernel.unwrap_or_default(),
-        background_cd_m2: background.map_or([0.0; 3], |b| b.to_array()),
-        exposure: exposure.unwrap_or_default(),
-        filmic: filmic.unwrap_or(false),
-        false_colour: false_colour.unwrap_or(false),
-        photon_memory_bytes: memory_mb.map_or(default.photon_memory_bytes, |mb| (mb * 1e6) as u64),
-        ..default
-    };
-    Some(CameraDescription { spec, place })
+    Some(CameraDescription { spec: spec?, place })
 }
 
 /// Position, the point looked at, and a direction that is up and not along the view.
@@ -114,7 +111,7 @@ fn read_pixels(table: &mut Table<'_, '_>) -> Option<[u32; 2]> {
 /// Samples come in four sets, whose spread is part of the error.
 fn read_samples(table: &mut Table<'_, '_>) -> Option<u32> {
     const REQUIRED: &str = "a multiple of 4 from 4 to 65536";
-    let samples = table.integer("samples", 4, MOST_SAMPLES, REQUIRED)?.value;
+    let samples = table.integer("samples", 4, u64::from(MOST_SAMPLES), REQUIRED)?.value;
     if !samples.is_multiple_of(4) {
         table.error("samples", Kind::Range, REQUIRED);
     }
@@ -125,7 +122,7 @@ fn read_samples(table: &mut Table<'_, '_>) -> Option<u32> {
 fn read_bandwidth(table: &mut Table<'_, '_>) -> Bandwidth {
     let radius = table.number("radius", &LENGTH);
     let words = "a whole number of photons from 2 to 2^20";
-    let nearest = table.integer("nearest", 2, MOST_NEAREST, words);
+    let nearest = table.integer("nearest", 2, u64::from(MOST_NEAREST), words);
     let progressive = table.number("progressive_radius", &LENGTH);
     let mut given =
         ["radius", "nearest", "progressive_radius"].map(|key| (table.place_of(key), key)).to_vec();
@@ -145,11 +142,8 @@ fn read_bandwidth(table: &mut Table<'_, '_>) -> Bandwidth {
         .unwrap_or_default()
 }
 
-/// What a picture by splatting cannot have, and what it does not look at.
-fn check_splat(table: &Table<'_, '_>, lens_radius_m: Option<f64>) {
-    if lens_radius_m.is_some_and(|r| r > 0.0) {
-        table.error("lens_radius", Kind::Range, "0 with method = \"splat\": photons are joined to one point");
-    }
+/// Warns of keys that a picture by splatting does not look at.
+fn warn_of_the_map(table: &Table<'_, '_>) {
     for key in OF_THE_MAP {
         if let Some(place) = table.place_of(key) {
             let found = format!("{key} with method = \"splat\"");

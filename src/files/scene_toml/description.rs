@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::scene_toml::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
-use crate::scene::camera::CameraSpec;
+use crate::scene::camera::Camera;
 use crate::surface::Reflectance;
 use crate::surface::tabulated::{Energy, Sides};
 
@@ -489,7 +489,7 @@ pub enum ReceiverEvents {
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraDescription {
     /// What it asks for, with the defaults filled in.
-    pub spec: CameraSpec,
+    pub spec: Camera,
     /// The header `[camera]`.
     pub place: Place,
 }

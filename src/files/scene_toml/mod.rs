@@ -23,7 +23,6 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-pub use crate::files::scene_toml::camera::MOST_PIXELS as MOST_CAMERA_PIXELS;
 pub use crate::files::scene_toml::heightfield::MOST_CELLS as MOST_HEIGHTFIELD_CELLS;
 
 use crate::error::{Diagnostic, Kind};

@@ -12,7 +12,7 @@ use crate::emitter::Emitter;
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::picture::camera::pinhole::EyeRay;
 use crate::picture::camera::view::View;
-use crate::picture::gather::density::{Density, Gathered};
+use crate::picture::gather::{Density, Gathered};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::scene::Scene;
 use crate::surface::value::Leg;
@@ -93,7 +93,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
                 add(found, weight, seen(scene, origin, direction, end));
                 if hit.is_none() {
-                    add(found, weight, self.view.spec.background_cd_m2);
+                    add(found, weight, self.view.camera.background_cd_m2);
                 }
             }
             let Some(hit) = hit else { return };
