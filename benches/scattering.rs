@@ -2,7 +2,7 @@
 //! table and build its samplers. The last lines are ratios of times taken in turns, which a busy machine disturbs least.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, missing_docs)]
 
-#[path = "../tests/tabulated_support/mod.rs"]
+#[path = "../tests/support/tables.rs"]
 mod tables;
 
 use std::hint::black_box;

@@ -3,7 +3,7 @@
 //! of scenes after the folder leave out the others.
 #![allow(clippy::print_stdout)]
 
-#[path = "../tests/picture_bias_support/mod.rs"]
+#[path = "../tests/support/caustic_views.rs"]
 mod views;
 
 use std::error::Error;

@@ -1,52 +1,20 @@
 //! Memory does not grow with the number of photons, and what a scene does not require is not there.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
-#![allow(unsafe_code)]
 
-mod closed_support;
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+// A binary of its own: the allocator counts the whole process, so no other test may run beside this one.
+#[path = "support/allocator.rs"]
+mod allocator;
+#[path = "support/mod.rs"]
+mod support;
 
 use caustix::files::scene_toml::build::build;
 use caustix::files::scene_toml::description::Description;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
-use closed_support::run;
 
-/// The system's allocator, counting live bytes and the most there ever were.
-struct Counting;
+use crate::allocator::peak_of;
+use crate::support::scenes::run;
 
-static LIVE: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call is handed on unchanged to the system's allocator; only counters are kept beside.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let live = LIVE.fetch_add(layout.size(), Ordering::SeqCst) + layout.size();
-        PEAK.fetch_max(live, Ordering::SeqCst);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        LIVE.fetch_sub(layout.size(), Ordering::SeqCst);
-        // SAFETY: the caller keeps the contract of `dealloc`, and `pointer` came from the system's allocator.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Most bytes alive while `work` ran, beyond those alive before.
-fn peak_of<T>(work: impl FnOnce() -> T) -> (usize, T) {
-    let before = LIVE.load(Ordering::SeqCst);
-    PEAK.store(before, Ordering::SeqCst);
-    let result = work();
-    (PEAK.load(Ordering::SeqCst) - before, result)
-}
-
-// One test: the counters are of the whole process.
 #[test]
 fn the_built_in_scene_needs_sums_and_nothing_that_grows_with_photons() {
     let scene = build(&Description::built_in().unwrap()).unwrap();

@@ -1,51 +1,22 @@
 //! Photons take no more memory than the camera was given, however many there are.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
-#![allow(unsafe_code)]
 
-mod picture_support;
+// A binary of its own: the allocator counts the whole process, so no other test may run beside this one.
+#[path = "support/allocator.rs"]
+mod allocator;
+#[path = "support/mod.rs"]
+mod support;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use caustix::picture::{PictureSummary, trace_picture};
 use caustix::scene::Scene;
 use caustix::scene::camera::{Bandwidth, CameraSpec};
 use caustix::surface::{Dielectric, Material, Reflectance};
 use glam::DVec3;
-use picture_support::{beam, grey, on_threads, panel, plan, rectangle, scene, sphere, unwatched};
 
-/// The system's allocator, counting live bytes and the most there ever were.
-struct Counting;
-
-static LIVE: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call is handed on unchanged to the system's allocator; only counters are kept beside.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let live = LIVE.fetch_add(layout.size(), Ordering::SeqCst) + layout.size();
-        PEAK.fetch_max(live, Ordering::SeqCst);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        LIVE.fetch_sub(layout.size(), Ordering::SeqCst);
-        // SAFETY: the caller keeps the contract of `dealloc`, and `pointer` came from the system's allocator.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Most bytes alive while `work` ran, beyond those alive before.
-fn peak_of<T>(work: impl FnOnce() -> T) -> (usize, T) {
-    let before = LIVE.load(Ordering::SeqCst);
-    PEAK.store(before, Ordering::SeqCst);
-    let result = work();
-    (PEAK.load(Ordering::SeqCst) - before, result)
-}
+use crate::allocator::peak_of;
+use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, scene, sphere, unwatched};
 
 /// A glass ball over a table before a wall, under a beam and a panel.
 fn ball_on_table(table: Material, memory_bytes: u64, bandwidth: Bandwidth, pixels: [u32; 2]) -> Scene {
@@ -74,7 +45,6 @@ fn peak(scene: &Scene, photons: u64) -> (usize, PictureSummary) {
     (peak, picture.summary().clone())
 }
 
-// One test: the counters are of the whole process.
 #[test]
 fn photons_take_what_the_camera_has_for_them_and_a_refused_picture_takes_nothing() {
     let red = Material::Lambertian { reflectance: Reflectance::rgb([0.9, 0.5, 0.4]) };

@@ -1,5 +1,5 @@
 //! Cells to try solvers of the cell equation on, the residual of a root by quadrature, and methods to compare with:
-//! unguarded ones and those of the `roots` crate. Shared by tests/solvers.rs and benches/solvers.rs.
+//! unguarded ones and those of the `roots` crate. Shared by tests/samplers/solvers.rs and benches/solvers.rs.
 #![allow(dead_code, missing_docs)]
 
 use std::cell::Cell as Counter;

@@ -1,25 +1,46 @@
-//! Photometric files for tests: the project's own and, where CAUSTIX_TEST_DATA names a folder, real ones.
+//! Files for tests: the project's own and, where CAUSTIX_TEST_DATA names a folder, real ones.
 
 use std::path::{Path, PathBuf};
 
+/// The project's folder.
+pub fn project() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The path of one of its files, for a command's line.
+pub fn in_project(path: &str) -> String {
+    project().join(path).display().to_string()
+}
+
+/// The folder of real files; `None` where CAUSTIX_TEST_DATA is not set. Either way a line says so, by which `.ci/run` counts the
+/// tests that read real files and those that skipped: so all of them come here.
+pub fn real_folder() -> Option<PathBuf> {
+    match std::env::var_os("CAUSTIX_TEST_DATA") {
+        Some(folder) => {
+            println!("real files: read");
+            Some(folder.into())
+        }
+        None => {
+            println!("real files: skipped, CAUSTIX_TEST_DATA is not set");
+            None
+        }
+    }
+}
+
 /// The photometric files of the project, in the order of their names.
 pub fn own_files() -> Vec<PathBuf> {
-    sorted_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("ies"))
+    sorted_files(&project().join("ies"))
 }
 
 /// The path of one of them.
 pub fn own_file(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("ies").join(name)
+    project().join("ies").join(name)
 }
 
-/// The well-formed real files, as `ies/expected.json` of the data folder judges them, in the order of their names;
-/// `None`, with a line that says so, where CAUSTIX_TEST_DATA is not set.
+/// The well-formed real photometric files, as `ies/expected.json` of the data folder judges them, in the order of their names;
+/// `None` where there is no [`real_folder`].
 pub fn real_files() -> Option<Vec<PathBuf>> {
-    let Some(folder) = std::env::var_os("CAUSTIX_TEST_DATA") else {
-        println!("skipped: CAUSTIX_TEST_DATA is not set");
-        return None;
-    };
-    let folder = Path::new(&folder).join("ies");
+    let folder = real_folder()?.join("ies");
     let expected: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.join("expected.json")).unwrap()).unwrap();
     let well_formed = |path: &PathBuf| {

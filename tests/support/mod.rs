@@ -1,11 +1,19 @@
-//! What the statistical tests share: tests of distributions with their p-values, quadrature, the real data files, and
-//! photometric angles and masses that share no code with the sampler.
-// Each test binary uses a part of it.
+//! What test binaries of several themes share: scenes and runs, the judgement of maps, tests of distributions, quadrature, the real
+//! data files, the command, and tables and angles that share no code with what is tested.
+// Each binary uses a part of it.
 #![allow(dead_code)]
 
 pub mod angles;
+pub mod caustic_views;
 pub mod cells;
 pub mod data;
 pub mod density;
+pub mod judge;
+pub mod pictures;
 pub mod quadrature;
+pub mod random;
+pub mod scatter_files;
+pub mod scenes;
 pub mod statistics;
+pub mod stranger;
+pub mod tables;

@@ -5,15 +5,11 @@ use std::path::{Path, PathBuf};
 
 use caustix::files::bsdf::merl;
 
-/// The folder of real scattering files; `None`, with a line that says so, where CAUSTIX_TEST_DATA is not set.
+use super::data;
+
+/// The folder of real scattering files, where there are any.
 pub fn real_folder() -> Option<PathBuf> {
-    match std::env::var_os("CAUSTIX_TEST_DATA") {
-        Some(folder) => Some(Path::new(&folder).join("brdf")),
-        None => {
-            println!("skipped: CAUSTIX_TEST_DATA is not set");
-            None
-        }
-    }
+    Some(data::real_folder()?.join("brdf"))
 }
 
 /// One incidence of a FRED list: its polar angle and (theta, phi, f) of every row, degrees and 1/sr.

@@ -1,0 +1,22 @@
+//! Scenes whose light has a closed form, laws that a run must keep (bits, coverage, rates), and the frames of luminaires.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod coverage;
+mod determinism;
+mod direct;
+mod discontinuous;
+mod emitter_colour;
+mod interrupted;
+mod lengths;
+mod nephroid;
+mod panel;
+mod photometric_frame;
+mod scaled;
+mod scaled_picture;
+mod shapes;
+mod slab;
+mod sphere;
+mod tabulated_scenes;

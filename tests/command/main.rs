@@ -1,0 +1,15 @@
+//! The command as a user types it.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod absorber;
+mod bsdf;
+mod contract;
+#[cfg(unix)]
+mod interrupts;
+mod outputs;
+mod picture;
+mod results_kept;
+mod sample;

@@ -1,0 +1,8 @@
+//! Shapes, meshes and the search for hits.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+mod meshes;
+mod obj;
+mod search;
+mod sides;
+mod watertight;

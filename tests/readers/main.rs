@@ -1,0 +1,31 @@
+//! Files that are read: photometric files, scattering tables, scenes; what they mean and what is said about bad ones.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+#[allow(dead_code)]
+#[path = "../../examples/make_brdf.rs"]
+mod make_brdf;
+#[allow(dead_code)]
+#[path = "../../examples/make_ies.rs"]
+mod make_ies;
+
+mod broken_scene;
+mod damage;
+mod photometry_damaged;
+mod photometry_own;
+mod photometry_real;
+mod scattering_damaged;
+mod scattering_formats;
+mod scattering_material;
+mod scattering_own;
+mod scattering_real;
+mod scattering_refined;
+mod scene_camera;
+mod scene_damaged;
+mod scene_errors;
+mod scene_limits;
+mod scene_own;
+mod scene_shape_errors;
+mod scene_tabulated;

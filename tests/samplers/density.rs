@@ -1,0 +1,261 @@
+//! Every photometric file: sampled directions have the density of the file's own candela.
+//!
+//! Directions come out of the emitter as photons get them. What they should be comes from the file alone: angles by their
+//! definitions, cell masses and distribution functions by quadrature of `Web::intensity_cd` under the solid angle of the
+//! file's type. Per file: chi-square on the table's cells and on cells shifted by half a cell, Kolmogorov-Smirnov on the
+//! polar angle and on the azimuth given the polar angle; the level of each is Sidak's for all files together.
+
+use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::files::lm63;
+use caustix::math::solve::Solver;
+use caustix::photometry::{PhotometricType, Photometry, Web};
+use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::{Rejection, Sampling};
+use caustix::sequence::independent::IndependentPoints;
+use caustix::sequence::{Points, to_unit_f64};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+use crate::support::angles::Luminaire;
+use crate::support::data;
+use crate::support::density::{Density, Measure, ends};
+use crate::support::statistics::{chi_square, kolmogorov_smirnov, sidak};
+
+const SAMPLES: u64 = 200_000;
+/// Samples for the azimuth given the polar angle: each costs an integral over the whole turn.
+const CONDITIONAL_SAMPLES: usize = 20_000;
+/// Chance of a false alarm over all files of a test together.
+const FAMILY: f64 = 0.01;
+const TESTS_A_FILE: usize = 4;
+/// Unit roundoff of angles in degrees, up to 360.
+const ANGLE_ROUNDING_DEG: f64 = 1e-12;
+
+const AIM: DVec3 = DVec3::new(0.3, -0.7, -0.5);
+/// Not perpendicular to the aim.
+const UP: DVec3 = DVec3::new(0.2, 0.1, 1.0);
+
+fn emitter(photometry: &Photometry) -> Photometric {
+    Photometric::new(photometry, DVec3::new(1.0, 2.0, 3.0), AIM, UP, None).unwrap()
+}
+
+/// (polar angle, azimuth) in degrees of directions that photons of this file start with.
+fn sampled_angles(photometry: &Photometry, density: &Density<'_>, seed: u64) -> Vec<(f64, f64)> {
+    angles_by(Sampling::default(), photometry, density, seed)
+}
+
+/// The same by another way of sampling tables.
+fn angles_by(
+    sampling: Sampling,
+    photometry: &Photometry,
+    density: &Density<'_>,
+    seed: u64,
+) -> Vec<(f64, f64)> {
+    let emitters = Emitters::new(vec![Emitter::Photometric(Box::new(emitter(photometry)))]).unwrap();
+    let points = IndependentPoints::new(seed, 0);
+    let frame = Luminaire::new(AIM, UP);
+    (0..)
+        .filter_map(|i| emitters.emit_by(sampling, &mut Coordinates::new(&points, i, true)))
+        .take(SAMPLES as usize)
+        .map(|(_, emission)| {
+            let angles = frame.angles_deg(photometry.web.photometric_type, emission.direction);
+            density.polar_and_azimuth(angles)
+        })
+        .collect()
+}
+
+/// Counts of the cells between these edges; the second number is of samples outside all of them.
+fn histogram(samples: &[(f64, f64)], p_edges: &[f64], q_edges: &[f64]) -> (Vec<u64>, u64) {
+    let columns = q_edges.len() - 1;
+    let mut counts = vec![0; (p_edges.len() - 1) * columns];
+    let mut outside = 0;
+    let find = |edges: &[f64], x: f64| {
+        let [first, last] = ends(edges);
+        let inside = x >= first - ANGLE_ROUNDING_DEG && x <= last + ANGLE_ROUNDING_DEG;
+        inside.then(|| edges.partition_point(|e| *e <= x).clamp(1, edges.len() - 1) - 1)
+    };
+    for &(p, q) in samples {
+        match (find(p_edges, p), find(q_edges, q)) {
+            (Some(i), Some(j)) => counts[i * columns + j] += 1,
+            _ => outside += 1,
+        }
+    }
+    (counts, outside)
+}
+
+/// Edges halfway between the angles of the file, where there are only few an even division into `least` beside.
+fn shifted(breaks: &[f64], least: usize) -> Vec<f64> {
+    let [first, last] = ends(breaks);
+    let mut edges = vec![first];
+    if breaks.len() > least {
+        edges.extend(breaks.windows(2).map(|b| 0.5 * (b[0] + b[1])));
+    } else {
+        edges.extend((1..least).map(|k| first + (last - first) * k as f64 / least as f64));
+    }
+    edges.push(last);
+    edges
+}
+
+/// p-values: chi-square on the file's cells, on shifted cells, Kolmogorov-Smirnov on both angles.
+fn p_values(samples: &[(f64, f64)], density: &Density<'_>) -> [f64; TESTS_A_FILE] {
+    let chi = |p_edges: &[f64], q_edges: &[f64]| {
+        let (counts, outside) = histogram(samples, p_edges, q_edges);
+        if outside > 0 { 0.0 } else { chi_square(&counts, &density.masses(p_edges, q_edges)).p_value }
+    };
+    let cdf = density.polar_cdf();
+    let polar = samples.iter().map(|s| cdf.at(s.0)).collect();
+    let azimuth = samples.iter().take(CONDITIONAL_SAMPLES).map(|s| density.azimuth_cdf(s.0, s.1)).collect();
+    [
+        chi(&density.p_breaks, &density.q_breaks),
+        chi(&shifted(&density.p_breaks, 17), &shifted(&density.q_breaks, 11)),
+        kolmogorov_smirnov(polar).p_value,
+        kolmogorov_smirnov(azimuth).p_value,
+    ]
+}
+
+/// Tests these files; the smallest p-value is asserted against the corrected level.
+fn check_density(files: &[PathBuf]) {
+    let level = sidak(FAMILY, files.len() * TESTS_A_FILE);
+    let mut smallest = 1.0f64;
+    for (k, path) in files.iter().enumerate() {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let photometry = lm63::read(path).unwrap();
+        let density = Density::new(&photometry.web);
+        let samples = sampled_angles(&photometry, &density, 1 + k as u64);
+        let p = p_values(&samples, &density);
+        println!(
+            "{name}: p cells {:.4}, shifted cells {:.4}, polar {:.4}, azimuth {:.4}",
+            p[0], p[1], p[2], p[3]
+        );
+        let least = p.into_iter().fold(1.0, f64::min);
+        assert!(least > level, "{name}: {p:?}, level {level:e}");
+        smallest = smallest.min(least);
+    }
+    println!("{} files, smallest p {smallest:.2e}, level {level:.2e}", files.len());
+}
+
+/// The emitter's flux is the integral of the file's candela, to the rounding of the sums.
+fn check_flux(path: &Path) {
+    let photometry = lm63::read(path).unwrap();
+    let expected = Density::new(&photometry.web).total() * photometry.factor();
+    let got = emitter(&photometry).flux_lm();
+    assert!((got / expected - 1.0).abs() < 1e-11, "{}: {got} lm, quadrature {expected} lm", path.display());
+}
+
+/// `invert(sample(u)) = u` at points that have nothing to do with the grid.
+fn check_invert(path: &Path) {
+    let photometry = lm63::read(path).unwrap();
+    let grid = emitter(&photometry).grid().clone();
+    let points = IndependentPoints::new(99, 0);
+    let (mut worst, mut checked) = ([0.0f64; 2], 0);
+    for i in 0..20_000 {
+        let (u1, u2) = (points.coordinate(i, 0), to_unit_f64(points.coordinate(i, 1)));
+        let at = grid.sample(u1, u2, Solver::DEFAULT);
+        let (v1, v2) = grid.invert(at.theta, at.phi).unwrap();
+        worst[0] = worst[0].max(v1.abs_diff(u1) as f64 / 2f64.powi(64));
+        worst[1] = worst[1].max((v2 - u2).abs());
+        checked += 1;
+    }
+    println!("{}: {checked} points, worst |du1| {:.1e}, |du2| {:.1e}", path.display(), worst[0], worst[1]);
+    assert!(worst[0] < 2e-14 && worst[1] < 1e-12, "{}: {worst:?}", path.display());
+}
+
+#[test]
+fn own_files_are_sampled_with_their_density() {
+    check_density(&data::own_files());
+}
+
+#[test]
+fn own_files_are_sampled_with_their_density_by_every_rejection() {
+    let files = data::own_files();
+    let level = sidak(FAMILY, files.len() * TESTS_A_FILE * Rejection::ALL.len());
+    for (k, path) in files.iter().enumerate() {
+        let photometry = lm63::read(path).unwrap();
+        let density = Density::new(&photometry.web);
+        for rejection in Rejection::ALL {
+            let samples = angles_by(Sampling::Rejection(rejection), &photometry, &density, 100 + k as u64);
+            let p = p_values(&samples, &density);
+            println!("{} {}: {p:.4?}", path.display(), rejection.name());
+            assert!(p.into_iter().all(|p| p > level), "{} {}: {p:?}", path.display(), rejection.name());
+        }
+    }
+}
+
+#[test]
+fn real_files_are_sampled_with_their_density() {
+    let Some(files) = data::real_files() else { return };
+    assert!(files.len() >= 20, "{} files", files.len());
+    check_density(&files);
+}
+
+#[test]
+fn flux_is_the_integral_of_the_intensity() {
+    data::own_files().iter().for_each(|path| check_flux(path));
+    data::real_files().iter().flatten().for_each(|path| check_flux(path));
+}
+
+#[test]
+fn own_files_invert_to_the_coordinates() {
+    data::own_files().iter().for_each(|path| check_invert(path));
+}
+
+#[test]
+fn real_files_invert_to_the_coordinates() {
+    data::real_files().iter().flatten().for_each(|path| check_invert(path));
+}
+
+/// Negative control: the samples of a file are refused by densities that are a little wrong.
+#[test]
+fn wrong_densities_are_refused() {
+    let level = sidak(FAMILY, 400);
+    let photometry = lm63::read(data::own_file("floodlight_b.ies")).unwrap();
+    let right = Density::new(&photometry.web);
+    let samples = sampled_angles(&photometry, &right, 5);
+    assert!(p_values(&samples, &right).into_iter().all(|p| p > level));
+
+    // The weight of a polar angle for that of a latitude.
+    let p = p_values(&samples, &right.clone().with_measure(Measure::Sine));
+    assert!(p[0] < level && p[1] < level && p[2] < level, "measure: {p:?}");
+
+    let wrong = |change: &dyn Fn(&mut Web)| {
+        let mut web = photometry.web.clone();
+        change(&mut web);
+        p_values(&samples, &Density::new(&web))
+    };
+    // Left and right, and up and down, exchanged.
+    let n_v = photometry.web.vertical_deg.len();
+    let p = wrong(&|web| {
+        let planes: Vec<f64> = web.candela.chunks(n_v).rev().flatten().copied().collect();
+        web.candela = planes;
+    });
+    assert!(p[0] < level && p[1] < level && p[2] < level, "left-right: {p:?}");
+    let p = wrong(&|web| web.candela.chunks_mut(n_v).for_each(<[f64]>::reverse));
+    assert!(p[0] < level && p[1] < level && p[3] < level, "up-down: {p:?}");
+    // The angles of the two axes exchanged: rows read as columns.
+    let p = wrong(&|web| {
+        let old = web.candela.clone();
+        for (i, c) in web.candela.iter_mut().enumerate() {
+            *c = old[i % n_v * n_v + i / n_v];
+        }
+    });
+    assert!(p.into_iter().all(|p| p < level), "transposed: {p:?}");
+    // One plane of 37 dimmed by 30 %: 8 % of the flux by 15 % in the mean, a noncentrality of some 500 on 1300 degrees.
+    let p = wrong(&|web| {
+        let middle = web.horizontal_deg.len() / 2;
+        web.candela[middle * n_v..(middle + 1) * n_v].iter_mut().for_each(|c| *c *= 0.7);
+    });
+    assert!(p[0] < level, "dimmed plane: {p:?}");
+}
+
+/// The same for type C: the corners of each cell exchanged along the azimuth, which leaves every node's ring as it is but
+/// for a turn by one plane.
+#[test]
+fn a_turn_by_one_plane_is_refused() {
+    let photometry = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    assert_eq!(photometry.web.photometric_type, PhotometricType::C);
+    let samples = sampled_angles(&photometry, &Density::new(&photometry.web), 6);
+    let mut turned = photometry.web.clone();
+    let n_v = turned.vertical_deg.len();
+    turned.candela.rotate_right(n_v);
+    let p = p_values(&samples, &Density::new(&turned));
+    assert!(p[0] == 0.0 && p[1] == 0.0 && p[3] < sidak(FAMILY, 400), "{p:?}");
+}
