@@ -6,7 +6,7 @@
 
 use crate::emitter::Emitter;
 use crate::geometry::Shape;
-use crate::surface::Bsdf;
+use crate::surface::Material;
 
 use super::Scene;
 use super::camera::Method;
@@ -17,10 +17,10 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let emitters = scene.emitters.as_slice();
     let surfaces = scene.geometry.surfaces();
     let emitter = |test: fn(&Emitter) -> bool| emitters.iter().any(test);
-    let bsdf = |test: fn(&Bsdf) -> bool| scene.bsdfs().iter().any(test);
+    let material = |test: fn(&Material) -> bool| scene.materials().iter().any(test);
     let shape = |test: fn(&Shape) -> bool| surfaces.iter().any(|s| test(&s.shape));
     let cells = |test: fn(&Cells) -> bool| scene.receivers.iter().any(|r| test(&r.cells));
-    let specular = bsdf(|b| matches!(b, Bsdf::Dielectric(_) | Bsdf::Mirror { .. }));
+    let specular = material(|b| matches!(b, Material::Dielectric(_) | Material::Mirror { .. }));
     [
         ("photometric table", emitter(|e| matches!(e, Emitter::Photometric(_)))),
         ("isotropic emission", emitter(|e| matches!(e, Emitter::Isotropic(_)))),
@@ -30,13 +30,13 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("triangles", shape(|s| matches!(s, Shape::Mesh(_) | Shape::Rectangle(_)))),
         ("exact shapes", shape(|s| matches!(s, Shape::Sphere(_) | Shape::Paraboloid(_)))),
         ("smooth normals", specular && shape(|s| matches!(s, Shape::Mesh(m) if m.is_smooth()))),
-        ("refraction", bsdf(|b| matches!(b, Bsdf::Dielectric(_)))),
-        ("mirror reflection", bsdf(|b| matches!(b, Bsdf::Mirror { .. }))),
+        ("refraction", material(|b| matches!(b, Material::Dielectric(_)))),
+        ("mirror reflection", material(|b| matches!(b, Material::Mirror { .. }))),
         (
             "diffuse scattering",
-            bsdf(|b| matches!(b, Bsdf::Lambertian { reflectance } if reflectance.luminous() > 0.0)),
+            material(|b| matches!(b, Material::Lambertian { reflectance } if reflectance.luminous() > 0.0)),
         ),
-        ("tabulated scattering", bsdf(|b| matches!(b, Bsdf::Tabulated(_)))),
+        ("tabulated scattering", material(|b| matches!(b, Material::Tabulated(_)))),
         ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
         ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),

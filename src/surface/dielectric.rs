@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use crate::sample::coordinates::Chooser;
-use crate::surface::{Incidence, Outcome, keep_side, working_normal};
+use crate::surface::{Event, Incidence, keep_side, working_normal};
 
 /// The two refractive indices of an interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,7 +49,7 @@ pub struct Ways {
 }
 
 impl Ways {
-    /// The mirrored direction, unit, and whether a smooth normal made an exception necessary ([`Outcome::Leaves`]).
+    /// The mirrored direction, unit, and whether a smooth normal made an exception necessary ([`Event::Leaves`]).
     #[inline]
     pub fn mirrored(&self) -> (DVec3, bool) {
         self.kept(self.direction + 2.0 * self.cos_i * self.normal, self.facet)
@@ -82,11 +82,11 @@ impl Dielectric {
 
     /// Reflects with the Fresnel reflectance, else refracts.
     #[inline]
-    pub fn interact<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Outcome {
+    pub fn scatter<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Event {
         let ways = self.ways(at);
         let through = !chooser.happens(ways.reflectance);
         let (direction, corrected) = if through { ways.refracted() } else { ways.mirrored() };
-        Outcome::Leaves { direction, through, corrected }
+        Event::Leaves { direction, through, corrected }
     }
 }
 
@@ -125,8 +125,8 @@ mod tests {
         let glass = Dielectric { ior: 1.5, ior_outside: 1.0 };
         for (angle, total) in [(critical - 1e-9, false), (critical + 1e-9, true)] {
             let mut script = Script { events: vec![false], ..Script::default() };
-            match glass.interact(&at(angle, false), &mut script) {
-                Outcome::Leaves { direction, through, .. } => {
+            match glass.scatter(&at(angle, false), &mut script) {
+                Event::Leaves { direction, through, .. } => {
                     assert_eq!(through, !total);
                     assert_eq!(script.asked.is_empty(), total, "total reflection draws nothing");
                     if !total {
@@ -134,7 +134,7 @@ mod tests {
                         assert!((direction.x - 1.5 * angle.sin()).abs() < 1e-12);
                     }
                 }
-                Outcome::Absorbed | Outcome::BelowHorizon => panic!("glass does not absorb"),
+                Event::Absorbed | Event::BelowHorizon => panic!("glass does not absorb"),
             }
         }
     }
@@ -144,8 +144,8 @@ mod tests {
         let glass = Dielectric { ior: 1.5, ior_outside: 1.2 };
         for (front, ratio) in [(true, 1.2 / 1.5), (false, 1.5 / 1.2)] {
             let mut script = Script { events: vec![false], ..Script::default() };
-            match glass.interact(&at(0.5, front), &mut script) {
-                Outcome::Leaves { direction, through: true, corrected: false } => {
+            match glass.scatter(&at(0.5, front), &mut script) {
+                Event::Leaves { direction, through: true, corrected: false } => {
                     assert!((direction.x - ratio * 0.5f64.sin()).abs() < 1e-15 && direction.z < 0.0);
                 }
                 other => panic!("{other:?}"),
@@ -163,13 +163,13 @@ mod tests {
             incidence.smooth = DVec3::new(tilt.sin(), 0.0, tilt.cos());
             for reflect in [true, false] {
                 let mut script = Script { events: vec![reflect], ..Script::default() };
-                match glass.interact(&incidence, &mut script) {
-                    Outcome::Leaves { direction, through, corrected: c } => {
+                match glass.scatter(&incidence, &mut script) {
+                    Event::Leaves { direction, through, corrected: c } => {
                         assert!(direction.z * if through { -1.0 } else { 1.0 } >= 0.0);
                         assert!((direction.length() - 1.0).abs() < 1e-14);
                         corrected += u32::from(c);
                     }
-                    Outcome::Absorbed | Outcome::BelowHorizon => panic!("glass does not absorb"),
+                    Event::Absorbed | Event::BelowHorizon => panic!("glass does not absorb"),
                 }
             }
         }

@@ -9,23 +9,23 @@ use glam::DVec3;
 use crate::math::frame::frame_about;
 use crate::math::trig::sin_cos;
 use crate::sample::coordinates::{Chooser, Purpose};
-use crate::surface::{Incidence, Outcome, Reflectance, Throughput};
+use crate::surface::{Event, Incidence, Reflectance, Throughput};
 
 /// Scatters what the throughput lets go on; density cos(theta)/pi in solid angle.
 #[inline]
-pub fn interact<C: Chooser, T: Throughput>(
+pub fn scatter<C: Chooser, T: Throughput>(
     reflectance: &Reflectance,
     at: &Incidence,
     chooser: &mut C,
     carried: &mut T,
-) -> Outcome {
+) -> Event {
     if !carried.reflect(reflectance, chooser) {
-        return Outcome::Absorbed;
+        return Event::Absorbed;
     }
     let u1 = chooser.uniform(Purpose::Scatter);
     let u2 = chooser.uniform(Purpose::Scatter);
     let direction = frame_about(at.facet) * cosine_direction(u1, u2);
-    Outcome::Leaves { direction: direction.normalize(), through: false, corrected: false }
+    Event::Leaves { direction: direction.normalize(), through: false, corrected: false }
 }
 
 /// Cosine-distributed direction about +Z: sin^2(theta) = u1, phi = 2 pi u2.
@@ -50,8 +50,8 @@ mod tests {
                 let at = Incidence { direction: -facet, facet, smooth: facet, front: true };
                 let mut script =
                     Script { events: vec![true], uniforms: vec![largest, u], ..Script::default() };
-                match interact(&Reflectance::grey(0.5), &at, &mut script, &mut Grey) {
-                    Outcome::Leaves { direction, through: false, .. } => assert!(direction.dot(facet) > 0.0),
+                match scatter(&Reflectance::grey(0.5), &at, &mut script, &mut Grey) {
+                    Event::Leaves { direction, through: false, .. } => assert!(direction.dot(facet) > 0.0),
                     other => panic!("{other:?}"),
                 }
             }

@@ -5,21 +5,21 @@
 use glam::DVec3;
 
 use crate::sample::coordinates::Chooser;
-use crate::surface::{Incidence, Outcome, Reflectance, Throughput, keep_side, working_normal};
+use crate::surface::{Event, Incidence, Reflectance, Throughput, keep_side, working_normal};
 
 /// Reflects what the throughput lets go on about the smooth normal.
 #[inline]
-pub fn interact<C: Chooser, T: Throughput>(
+pub fn scatter<C: Chooser, T: Throughput>(
     reflectance: &Reflectance,
     at: &Incidence,
     chooser: &mut C,
     carried: &mut T,
-) -> Outcome {
+) -> Event {
     if !carried.reflect(reflectance, chooser) {
-        return Outcome::Absorbed;
+        return Event::Absorbed;
     }
     let (direction, corrected) = reflected(at);
-    Outcome::Leaves { direction, through: false, corrected }
+    Event::Leaves { direction, through: false, corrected }
 }
 
 /// Where a mirror sends what arrives, unit, and whether a smooth normal made an exception necessary.
@@ -46,17 +46,17 @@ mod tests {
             front: true,
         };
         let mut script = Script { events: vec![true, false], ..Script::default() };
-        match interact(&Reflectance::grey(0.7), &at, &mut script, &mut Grey) {
-            Outcome::Leaves { direction, through: false, corrected: false } => {
+        match scatter(&Reflectance::grey(0.7), &at, &mut script, &mut Grey) {
+            Event::Leaves { direction, through: false, corrected: false } => {
                 assert!((direction - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-15);
             }
             other => panic!("{other:?}"),
         }
-        assert!(matches!(interact(&Reflectance::grey(0.7), &at, &mut script, &mut Grey), Outcome::Absorbed));
+        assert!(matches!(scatter(&Reflectance::grey(0.7), &at, &mut script, &mut Grey), Event::Absorbed));
         assert_eq!(script.asked, [0.7, 0.7]);
         assert!(matches!(
-            interact(&Reflectance::grey(1.0), &at, &mut Script::default(), &mut Grey),
-            Outcome::Leaves { .. }
+            scatter(&Reflectance::grey(1.0), &at, &mut Script::default(), &mut Grey),
+            Event::Leaves { .. }
         ));
     }
 }

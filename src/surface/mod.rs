@@ -6,7 +6,7 @@
 //! is the albedo and no cosine or eta^2 factor is left over; what a reflectance does to a photon with weights is told by its
 //! [`Throughput`]. Coordinates are drawn only where there is more than one outcome.
 //!
-//! To add a model: a file beside these, a line in [`Bsdf`] and an arm in [`Bsdf::interact`]; the scene file's name for it
+//! To add a model: a file beside these, a line in [`Material`] and an arm in [`Material::scatter`]; the scene file's name for it
 //! is given in `scene`.
 
 pub mod dielectric;
@@ -45,7 +45,7 @@ pub struct Incidence {
 
 /// What became of the photon.
 #[derive(Debug, Clone, Copy)]
-pub enum Outcome {
+pub enum Event {
     /// It ends here.
     Absorbed,
     /// It ends here because a table sent it below the horizon, where there is nothing but the surface (METHOD 4).
@@ -64,7 +64,7 @@ pub enum Outcome {
 
 /// Everything a surface can be made of.
 #[derive(Debug, Clone)]
-pub enum Bsdf {
+pub enum Material {
     /// A smooth interface between two transparent media.
     Dielectric(Dielectric),
     /// A mirror of this reflectance at every angle.
@@ -83,21 +83,21 @@ pub enum Bsdf {
     Absorber,
 }
 
-impl Bsdf {
+impl Material {
     /// Decides what happens to a photon that arrived, and to what it carries.
     #[inline]
-    pub fn interact<C: Chooser, T: Throughput>(
+    pub fn scatter<C: Chooser, T: Throughput>(
         &self,
         at: &Incidence,
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         match self {
-            Self::Dielectric(dielectric) => dielectric.interact(at, chooser),
-            Self::Mirror { reflectance } => mirror::interact(reflectance, at, chooser, carried),
-            Self::Lambertian { reflectance } => lambertian::interact(reflectance, at, chooser, carried),
-            Self::Tabulated(table) => table.interact(at, chooser, carried),
-            Self::Absorber => Outcome::Absorbed,
+            Self::Dielectric(dielectric) => dielectric.scatter(at, chooser),
+            Self::Mirror { reflectance } => mirror::scatter(reflectance, at, chooser, carried),
+            Self::Lambertian { reflectance } => lambertian::scatter(reflectance, at, chooser, carried),
+            Self::Tabulated(table) => table.scatter(at, chooser, carried),
+            Self::Absorber => Event::Absorbed,
         }
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 
-use crate::surface::Bsdf;
+use crate::surface::Material;
 
 /// A direction away from a surface, and the side it is on: state where it is known, because next to edge-on the sign of a
 /// product may disagree by rounding.
@@ -24,7 +24,7 @@ impl Leg {
     }
 }
 
-impl Bsdf {
+impl Material {
     /// Whether it spreads light over a solid angle: there photons are kept, and eye paths end.
     #[inline]
     pub fn scatters(&self) -> bool {
@@ -39,12 +39,12 @@ impl Bsdf {
     /// the surface, whose facet's outward normal is `outward`. What goes on specularly has no value: 0.
     #[inline]
     pub fn value(&self, outward: DVec3, wi: DVec3, wo: DVec3) -> [f64; 3] {
-        self.value_between(outward, Leg::new(wi, outward), Leg::new(wo, outward))
+        self.eval(outward, Leg::new(wi, outward), Leg::new(wo, outward))
     }
 
     /// The same where it is known which side each direction is on.
     #[inline]
-    pub fn value_between(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
+    pub fn eval(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
         match self {
             Self::Lambertian { reflectance } if wi.front == wo.front => {
                 reflectance.by_channel().map(|part| part * FRAC_1_PI)
@@ -62,13 +62,13 @@ mod tests {
 
     #[test]
     fn a_lambertian_surface_is_equally_bright_from_its_lit_side() {
-        let wall = Bsdf::Lambertian { reflectance: Reflectance::rgb([0.5, 0.25, 1.0]) };
+        let wall = Material::Lambertian { reflectance: Reflectance::rgb([0.5, 0.25, 1.0]) };
         let (wi, wo) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.8, 0.6));
         assert_eq!(wall.value(DVec3::Z, wi, wo), [0.5 * FRAC_1_PI, 0.25 * FRAC_1_PI, FRAC_1_PI]);
         assert_eq!(wall.value(-DVec3::Z, wi, wo), wall.value(DVec3::Z, wi, wo));
         assert_eq!(wall.value(DVec3::Z, wi, -wo), [0.0; 3]);
         assert!(wall.scatters());
-        assert!(!Bsdf::Lambertian { reflectance: Reflectance::grey(0.0) }.scatters());
-        assert!(!Bsdf::Absorber.scatters());
+        assert!(!Material::Lambertian { reflectance: Reflectance::grey(0.0) }.scatters());
+        assert!(!Material::Absorber.scatters());
     }
 }

@@ -11,7 +11,7 @@ use caustix::scene::camera::CameraSpec;
 use caustix::scene::{Scene, SceneParts};
 use caustix::sequence::owen::OwenPoints;
 use caustix::surface::tabulated::Options;
-use caustix::surface::{Bsdf, Grey, Incidence, Outcome, Reference, Tabulated};
+use caustix::surface::{Event, Grey, Incidence, Material, Reference, Tabulated};
 use glam::DVec3;
 
 use crate::one_pixel::{assert_close, narrow, pixel};
@@ -44,7 +44,7 @@ fn the_value_is_what_photons_do() {
         rotation_deg: 25.0,
         ..Options::default()
     };
-    let bsdf = Bsdf::Tabulated(Box::new(Tabulated::new(&table(1.0), &options).unwrap().0));
+    let bsdf = Material::Tabulated(Box::new(Tabulated::new(&table(1.0), &options).unwrap().0));
     for (outward, wi) in [
         (DVec3::Z, DVec3::new(0.5, 0.2, 0.8)),
         (DVec3::new(0.3, -0.5, 0.8), DVec3::new(0.9, 0.1, 0.2)),
@@ -60,8 +60,8 @@ fn the_value_is_what_photons_do() {
         // Reflected and transmitted apart: [f 1, f probe].
         let mut photons = [[0.0; 2]; 2];
         for i in 0..n {
-            let left = bsdf.interact(&at, &mut Coordinates::new(&points, i, true), &mut Grey);
-            if let Outcome::Leaves { direction, through, .. } = left {
+            let left = bsdf.scatter(&at, &mut Coordinates::new(&points, i, true), &mut Grey);
+            if let Event::Leaves { direction, through, .. } = left {
                 photons[usize::from(through)][0] += 1.0 / n as f64;
                 photons[usize::from(through)][1] += probe(direction) / n as f64;
             }
@@ -101,7 +101,7 @@ fn sheet_before_a_panel(strength: f64, specular_remainder: bool) -> (Scene, f64)
     let parts = SceneParts {
         surfaces: vec![(
             Surface { name: "sheet".into(), shape: Shape::Rectangle(shape) },
-            Bsdf::Tabulated(Box::new(sheet)),
+            Material::Tabulated(Box::new(sheet)),
         )],
         emitters: vec![("panel".into(), Emitter::Panel(panel))],
         ..SceneParts::default()
@@ -129,7 +129,7 @@ fn light_behind_a_sheet_is_scattered_to_the_eye_before_it() {
     let spec = CameraSpec { samples: 1024, ..narrow([0.3, 0.0, -1.0], [0.0, 0.0, 0.0]) };
     let seen = pixel(&scene, &spec, 4, 0.1);
     let wo = DVec3::new(0.3, 0.0, -1.0).normalize();
-    let bsdf = &scene.bsdfs()[0];
+    let bsdf = &scene.materials()[0];
     // Quadrature over the panel.
     let n = 60;
     let exact = (0..n * n)

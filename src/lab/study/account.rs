@@ -12,7 +12,7 @@ use crate::sample::method::{Rejection, Sampling};
 use crate::scene::Scene;
 use crate::sequence::Points;
 use crate::sequence::independent::IndependentPoints;
-use crate::surface::{Bsdf, Grey, Incidence, Rgb, Throughput};
+use crate::surface::{Grey, Incidence, Material, Rgb, Throughput};
 use crate::transport::census::Exceptions;
 use crate::transport::{Arrival, End, Sink, walk};
 
@@ -129,9 +129,9 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
             End::Absorbed(surface) => {
                 // The last arrival was no scattering.
                 events.end = 2.0;
-                match scene.bsdf(surface) {
-                    Bsdf::Lambertian { .. } | Bsdf::Tabulated(_) => events.scattered -= 1.0,
-                    Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => {}
+                match scene.material(surface) {
+                    Material::Lambertian { .. } | Material::Tabulated(_) => events.scattered -= 1.0,
+                    Material::Dielectric(_) | Material::Mirror { .. } | Material::Absorber => {}
                 }
             }
             End::Escaped | End::Killed => events.end = 1.0,
@@ -170,10 +170,10 @@ struct Arrivals<'s> {
 
 impl<T> Sink<T> for Arrivals<'_> {
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
-        match self.scene.bsdf(arrival.hit.surface) {
-            Bsdf::Dielectric(_) | Bsdf::Mirror { .. } => self.events.specular += 1.0,
-            Bsdf::Lambertian { .. } => self.events.scattered += 1.0,
-            Bsdf::Tabulated(table) => {
+        match self.scene.material(arrival.hit.surface) {
+            Material::Dielectric(_) | Material::Mirror { .. } => self.events.specular += 1.0,
+            Material::Lambertian { .. } => self.events.scattered += 1.0,
+            Material::Tabulated(table) => {
                 self.events.scattered += 1.0;
                 let sign = if arrival.hit.front { 1.0 } else { -1.0 };
                 let at = Incidence {
@@ -186,7 +186,7 @@ impl<T> Sink<T> for Arrivals<'_> {
                 self.events.table_proposals[0] += cells;
                 self.events.table_proposals[1] += whole;
             }
-            Bsdf::Absorber => {}
+            Material::Absorber => {}
         }
     }
 }

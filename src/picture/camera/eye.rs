@@ -16,7 +16,7 @@ use crate::picture::gather::{Density, Gathered};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::scene::Scene;
 use crate::surface::value::Leg;
-use crate::surface::{Bsdf, Dielectric, EyeWeight, Incidence, mirror};
+use crate::surface::{Dielectric, EyeWeight, Incidence, Material, mirror};
 use crate::transport::walk::MAX_EVENTS;
 
 /// What an eye path looks for.
@@ -97,13 +97,13 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 }
             }
             let Some(hit) = hit else { return };
-            let bsdf = scene.bsdf(hit.surface);
+            let bsdf = scene.material(hit.surface);
             if bsdf.scatters() {
                 let lit = self.scattered(&hit, &path, chooser);
                 add(found, weight, lit);
             }
             let onward = match bsdf {
-                Bsdf::Dielectric(glass) => Some(self.pass_glass(glass, &hit, &mut path, chooser)),
+                Material::Dielectric(glass) => Some(self.pass_glass(glass, &hit, &mut path, chooser)),
                 _ => pass_on(bsdf, &hit, &mut path, chooser),
             };
             let Some((onward, through)) = onward else { return };
@@ -142,10 +142,10 @@ impl<'a, const C: usize> EyePath<'a, C> {
 
     /// The light that a surface scatters to the eye: by shadow rays as returned, by photons as gathered.
     fn scattered<R: Chooser>(&mut self, hit: &Hit, path: &Branch, chooser: &mut R) -> [f64; 3] {
-        let bsdf = self.view.scene.bsdf(hit.surface);
+        let bsdf = self.view.scene.material(hit.surface);
         let wo = Leg { direction: -path.direction, front: hit.front };
         for density in self.looks.densities {
-            if let Bsdf::Lambertian { reflectance } = bsdf {
+            if let Material::Lambertian { reflectance } = bsdf {
                 let value = reflectance.by_channel().map(|r| r * FRAC_1_PI);
                 let weight = path.weight.weight();
                 let weight = std::array::from_fn(|c| weight[c] * value[c]);
@@ -153,7 +153,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 continue;
             }
             let value = |travel: DVec3, front: bool| {
-                channels(bsdf.value_between(hit.normal, Leg { direction: -travel, front }, wo))
+                channels(bsdf.eval(hit.normal, Leg { direction: -travel, front }, wo))
             };
             density.gather(hit, channels(path.weight.weight()), value, &mut self.gathered);
         }
@@ -198,7 +198,7 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
 
 /// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Panels stand in nobody's way.
 fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, chooser: &mut R) -> [f64; 3] {
-    let bsdf = scene.bsdf(hit.surface);
+    let bsdf = scene.material(hit.surface);
     let from = |side: Side| {
         let mut at = *at;
         at.leave(hit, side);
@@ -210,7 +210,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
         let place = place_on(emitter, chooser);
         let Some(light) = emitter.direct_light(hit.position, place) else { continue };
         let wi = Leg::new(light.towards, hit.normal);
-        let value = bsdf.value_between(hit.normal, wi, wo);
+        let value = bsdf.eval(hit.normal, wi, wo);
         if value == [0.0; 3] {
             continue;
         }
@@ -235,13 +235,18 @@ fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
 }
 
 /// Where an eye path goes on from anything but glass: (direction, whether through the surface); `None` where it ends.
-fn pass_on<R: Chooser>(bsdf: &Bsdf, hit: &Hit, path: &mut Branch, chooser: &mut R) -> Option<(DVec3, bool)> {
+fn pass_on<R: Chooser>(
+    bsdf: &Material,
+    hit: &Hit,
+    path: &mut Branch,
+    chooser: &mut R,
+) -> Option<(DVec3, bool)> {
     match bsdf {
-        Bsdf::Mirror { reflectance } => {
+        Material::Mirror { reflectance } => {
             let onward = mirror::reflected(&incidence(hit, path.direction)).0;
             path.weight.attenuate(reflectance.by_channel(), chooser).then_some((onward, false))
         }
-        Bsdf::Tabulated(table) => {
+        Material::Tabulated(table) => {
             let [mirrored, straight] = table.beyond(hit.normal, path.direction, hit.front);
             // Both only where the two sides of a table differ: one of them, counted twice.
             let (way, times) = match (mirrored, straight) {
@@ -252,7 +257,7 @@ fn pass_on<R: Chooser>(bsdf: &Bsdf, hit: &Hit, path: &mut Branch, chooser: &mut 
             let part = way.part.map(|p| p * times);
             path.weight.attenuate(part, chooser).then_some((way.direction, way.through))
         }
-        Bsdf::Dielectric(_) | Bsdf::Lambertian { .. } | Bsdf::Absorber => None,
+        Material::Dielectric(_) | Material::Lambertian { .. } | Material::Absorber => None,
     }
 }
 

@@ -32,7 +32,7 @@ use crate::math::solve::Solver;
 use crate::sample::coordinates::Chooser;
 use crate::scattering::{Quantity, ScatterTable};
 use crate::surface::throughput::Fate;
-use crate::surface::{Incidence, Outcome, Reference, Reflectance, Throughput};
+use crate::surface::{Event, Incidence, Reference, Reflectance, Throughput};
 use crate::units::LUMINANCE_OF_RGB;
 
 use arrival::Arrival;
@@ -200,32 +200,32 @@ impl Tabulated {
 
     /// Scatters what the throughput lets be scattered. (Kept out of the walk, whose other surfaces need few registers.)
     #[inline(never)]
-    pub fn interact<C: Chooser, T: Throughput>(
+    pub fn scatter<C: Chooser, T: Throughput>(
         &self,
         at: &Incidence,
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         let face = self.face(at.front);
         let along = || self.along(if at.front { at.facet } else { -at.facet });
         let arrival = Arrival::new(-at.direction, at.facet, along);
         let angles = Self::angles(face, &arrival, along);
         if face.coloured {
-            self.interact_coloured(face, &arrival, angles, chooser, carried)
+            self.scatter_coloured(face, &arrival, angles, chooser, carried)
         } else {
-            self.interact_grey(face, &arrival, angles, chooser, carried)
+            self.scatter_grey(face, &arrival, angles, chooser, carried)
         }
     }
 
     #[inline(always)]
-    fn interact_grey<C: Chooser, T: Throughput>(
+    fn scatter_grey<C: Chooser, T: Throughput>(
         &self,
         face: &Face,
         arrival: &Arrival,
         (theta, phi): (f64, f64),
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         let layers = face.layers.map(|k| k.map(|k| &self.layers[k]));
         let mut branches = Branches::none();
         let albedo = branches.add_grey(layers, theta, phi);
@@ -242,21 +242,21 @@ impl Tabulated {
         match branches.decide(chooser) {
             Some(branch) => match layers[branch.lobe as usize] {
                 Some(layer) => outcome(&branch::leave(arrival, layer, branch.slice as usize, chooser).0),
-                None => Outcome::Absorbed,
+                None => Event::Absorbed,
             },
-            None => Outcome::Absorbed,
+            None => Event::Absorbed,
         }
     }
 
     #[inline(always)]
-    fn interact_coloured<C: Chooser, T: Throughput>(
+    fn scatter_coloured<C: Chooser, T: Throughput>(
         &self,
         face: &Face,
         arrival: &Arrival,
         (theta, phi): (f64, f64),
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
         let lobes = Lobes { arrival, lobes: face.layers.map(layer) };
         let albedo = lobes.albedo(true);
@@ -265,7 +265,7 @@ impl Tabulated {
             return unscattered(face, arrival, fate);
         };
         let Some(left) = lobes.sample(Some(shares), chooser) else {
-            return Outcome::Absorbed;
+            return Event::Absorbed;
         };
         let part = if face.rest.is_some() { 1.0 } else { crate::surface::reflectance::luminance(albedo) };
         carried.scattered(left.values, part);
@@ -274,24 +274,24 @@ impl Tabulated {
 }
 
 /// What becomes of a photon that the table does not scatter.
-fn unscattered(face: &Face, arrival: &Arrival, fate: Fate) -> Outcome {
+fn unscattered(face: &Face, arrival: &Arrival, fate: Fate) -> Event {
     match (fate, face.rest) {
         (Fate::GoesOn, Some(quantity)) => {
             let direction = arrival.specular(quantity).normalize();
-            Outcome::Leaves { direction, through: quantity == Quantity::Transmission, corrected: false }
+            Event::Leaves { direction, through: quantity == Quantity::Transmission, corrected: false }
         }
-        _ => Outcome::Absorbed,
+        _ => Event::Absorbed,
     }
 }
 
 /// What becomes of one that it scatters.
 #[inline(always)]
-fn outcome(left: &Left) -> Outcome {
+fn outcome(left: &Left) -> Event {
     if left.below_horizon {
-        return Outcome::BelowHorizon;
+        return Event::BelowHorizon;
     }
     let through = left.quantity == Quantity::Transmission;
-    Outcome::Leaves { direction: left.wo.normalize(), through, corrected: false }
+    Event::Leaves { direction: left.wo.normalize(), through, corrected: false }
 }
 
 impl Tabulated {
