@@ -1,26 +1,11 @@
-//! Checks that need the whole scene: coincident surfaces, emitters where none may be.
+//! Emitters where none may be: on a surface, inside glass, across a closed surface.
 
 use glam::DVec3;
 
 use crate::emitter::{Emitter, Panel, collimated::CrossSection};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts, coincident_surfaces};
+use crate::geometry::{Geometry, SurfaceId, Whereabouts};
 use crate::surface::Material;
-
-use crate::files::scene_toml::description::Place;
-
-/// Every pair of surfaces that lie in the same place: neither would be first. Each points to the second of the two.
-pub fn coincidences(surfaces: &[Surface], places: &[Place]) -> Vec<Diagnostic> {
-    coincident_surfaces(surfaces).into_iter().map(|([_, second], e)| at_place(places, second, e)).collect()
-}
-
-/// The diagnostic at the place of part number `index`, if the scene comes from a file.
-pub fn at_place(places: &[Place], index: usize, diagnostic: Diagnostic) -> Diagnostic {
-    match places.get(index) {
-        Some(place) => diagnostic.at(place.line, place.column),
-        None => diagnostic,
-    }
-}
 
 /// The side state of photons of an emitter.
 ///

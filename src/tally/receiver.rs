@@ -4,9 +4,9 @@
 //! A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is the (u = 0, v = 1) corner. A
 //! mesh has a cell a face.
 
-use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use crate::geometry::{Geometry, Hit};
 use crate::scene::receiver::{Cells, Receiver};
+use crate::scene::receiver::{ReceiverEvents, ReceiverSide};
 use crate::surface::Throughput;
 use crate::transport::weighted::Weighing;
 use crate::transport::{Arrival, Sink};

@@ -16,14 +16,14 @@ use std::sync::atomic::AtomicBool;
 
 use caustix::emitter::collimated::CrossSection;
 use caustix::emitter::{Collimated, Emitter};
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use caustix::geometry::{Mesh, MeshParts, Smoothing};
 use caustix::geometry::{Shape, Surface};
 use caustix::picture::{AnyPicture, trace_picture};
 use caustix::run::{Outcome, trace};
-use caustix::scene::camera::{CameraSpec, Filter, Method};
+use caustix::scene::camera::{Camera, CameraSpec, Filter, Method};
+use caustix::scene::receiver::ReceiverEvents;
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::surface::{Material, Reflectance};
 use glam::DVec3;
 
@@ -64,30 +64,24 @@ fn cup(inclination: f64, floor: Material, camera: Option<CameraSpec>) -> Scene {
     let section = CrossSection::Rectangle(across * (0.5 * width), DVec3::Y * 1.01);
     let centre = across * (0.5 * width - 0.01) - direction * 3.0;
     let flux_lm = width * 2.02;
-    let receiver = |name: &str, cells| ReceiverSpec {
-        name: name.into(),
-        surface: "floor".into(),
-        cells: Some(cells),
-        side: ReceiverSide::Front,
-        events: ReceiverEvents::Indirect,
+    let receiver = |name, cells| {
+        let spec = ReceiverSpec::new(name, "floor").unwrap().with_cells(cells).unwrap();
+        spec.of_events(ReceiverEvents::Indirect)
     };
     let mirror = Material::Mirror { reflectance: Reflectance::grey(1.0) };
     let plate = rectangle("floor", DVec3::NEG_Y, DVec3::X, DVec3::Y * 2.0);
-    Scene::new(SceneParts {
-        surfaces: vec![(plate, floor), (wall, mirror)],
-        emitters: vec![(
-            "sun".into(),
-            Emitter::Collimated(Collimated { centre, direction, section, flux_lm }),
-        )],
-        receivers: vec![
-            receiver("fine", [FINE, 2 * FINE]),
-            receiver("coarse", [COARSE, 2 * COARSE]),
-            receiver("thin", [THIN, THIN_ROWS]),
-        ],
-        camera,
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface(plate.name, plate.shape, floor)
+        .surface(wall.name, wall.shape, mirror)
+        .emitter("sun", Emitter::Collimated(Collimated { centre, direction, section, flux_lm }))
+        .receiver(receiver("fine", [FINE, 2 * FINE]))
+        .receiver(receiver("coarse", [COARSE, 2 * COARSE]))
+        .receiver(receiver("thin", [THIN, THIN_ROWS]));
+    if let Some(camera) = camera {
+        scene.camera(Camera::new(camera).unwrap());
+    }
+    scene.build().unwrap()
 }
 
 fn traced(inclination: f64) -> Outcome {

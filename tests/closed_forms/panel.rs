@@ -7,9 +7,8 @@
 
 use std::f64::consts::PI;
 
-use caustix::files::scene_toml::build::build;
+use caustix::files::bytes::Base;
 use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
@@ -130,8 +129,8 @@ fn nothing_shines_backwards() {
 }
 
 fn refused(text: &str) -> String {
-    let description = parse(text, "test.toml", Base::Directory(project().join("scenes"))).unwrap();
-    let result: Result<Scene, _> = build(&description);
+    let file = parse(text, "test.toml", Base::Directory(project().join("scenes"))).unwrap();
+    let result: Result<Scene, _> = file.build();
     let errors = result.err().unwrap_or_else(|| panic!("accepted:\n{text}"));
     assert_eq!(errors.len(), 1, "{errors:?}");
     assert_eq!(errors[0].line(), Some(1), "{errors:?}");

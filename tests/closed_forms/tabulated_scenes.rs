@@ -1,12 +1,12 @@
 //! Tabulated surfaces in closed scenes: against the Lambertian material, and where all light must end in one place.
 
 use caustix::emitter::{Emitter, Isotropic};
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{LobeSide, ScatterTable};
+use caustix::scene::receiver::ReceiverSide;
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::surface::tabulated::{Energy, Options, Sides};
@@ -37,21 +37,17 @@ fn surface(name: &str, shape: Shape, bsdf: Material) -> (Surface, Material) {
 fn room(walls: Material, shelf: Material) -> Scene {
     let box_shape = Shape::Mesh(box_mesh(DVec3::splat(-1.0), DVec3::new(1.0, 1.2, 0.9)).unwrap());
     let plate = Rectangle::new(DVec3::new(-0.7, -0.6, -0.3), DVec3::X * 1.2, DVec3::Y * 1.1).unwrap();
-    let receiver = |front: bool| ReceiverSpec {
-        name: if front { "up" } else { "down" }.into(),
-        surface: "shelf".into(),
-        cells: Some([4, 4]),
-        side: if front { ReceiverSide::Front } else { ReceiverSide::Back },
-        events: ReceiverEvents::All,
-    };
+    let receiver =
+        |name, side| ReceiverSpec::new(name, "shelf").unwrap().with_cells([4, 4]).unwrap().on_side(side);
     let lamp = Emitter::Isotropic(Isotropic { position: DVec3::new(0.3, 0.4, 0.5), flux_lm: 1000.0 });
-    Scene::new(SceneParts {
-        surfaces: vec![surface("walls", box_shape, walls), surface("shelf", Shape::Rectangle(plate), shelf)],
-        emitters: vec![("lamp".into(), lamp)],
-        receivers: vec![receiver(true), receiver(false)],
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface("walls", box_shape, walls)
+        .surface("shelf", plate.into(), shelf)
+        .emitter("lamp", lamp)
+        .receiver(receiver("up", ReceiverSide::Front))
+        .receiver(receiver("down", ReceiverSide::Back));
+    scene.build().unwrap()
 }
 
 #[test]
@@ -116,12 +112,9 @@ fn hits_per_photon_have_the_mean_that_the_albedo_gives() {
         let a = t.albedo(true, DVec3::Z)[0];
         let ball = Shape::Sphere(Sphere::new(DVec3::new(0.1, 0.0, 0.2), 1.3).unwrap());
         let lamp = Emitter::Isotropic(Isotropic { position: DVec3::new(0.4, -0.3, 0.1), flux_lm: 1.0 });
-        let scene = Scene::new(SceneParts {
-            surfaces: vec![surface("ball", ball, bsdf)],
-            emitters: vec![("lamp".into(), lamp)],
-            ..SceneParts::default()
-        })
-        .unwrap();
+        let mut scene = SceneBuilder::new();
+        scene.surface("ball", ball, bsdf).emitter("lamp", lamp);
+        let scene = scene.build().unwrap();
         let points = IndependentPoints::new(seed, 0);
         let (n, mut sum) = (1u64 << 17, 0.0);
         for index in 0..n {
@@ -296,12 +289,9 @@ fn light_below_the_horizon_is_absorbed_and_counted() {
     let section = CrossSection::Disc(across, wi.cross(across));
     let beam = Collimated { centre: 4.0 * wi, direction: -wi, section, flux_lm: 100.0 };
     let plate = Rectangle::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0).unwrap();
-    let scene = Scene::new(SceneParts {
-        surfaces: vec![surface("plate", Shape::Rectangle(plate), bsdf)],
-        emitters: vec![("beam".into(), Emitter::Collimated(beam))],
-        ..SceneParts::default()
-    })
-    .unwrap();
+    let mut scene = SceneBuilder::new();
+    scene.surface("plate", Shape::Rectangle(plate), bsdf).emitter("beam", Emitter::Collimated(beam));
+    let scene = scene.build().unwrap();
     let outcome = run(&scene, Sequence::Independent, 1 << 18, 4, 5);
     let photons = outcome.photons as f64;
     for (count, part) in [(outcome.census.exceptions.below_horizon, below), (outcome.ledger.escaped, above)] {

@@ -8,7 +8,7 @@ use caustix::geometry::{Rectangle, Shape, Surface};
 use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{Frame, Quantity, ScatterTable};
 use caustix::scene::camera::CameraSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::owen::OwenPoints;
 use caustix::surface::tabulated::Options;
 use caustix::surface::{Event, Grey, Incidence, Material, Reference, Tabulated};
@@ -98,15 +98,11 @@ fn sheet_before_a_panel(strength: f64, specular_remainder: bool) -> (Scene, f64)
     let albedo = sheet.albedo(true, incidence(20.0, 0.0))[0];
     let shape = Rectangle::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
     let panel = Panel::new(DVec3::Z, DVec3::NEG_Z, DVec3::Y, [0.5; 2], PI * 0.25);
-    let parts = SceneParts {
-        surfaces: vec![(
-            Surface { name: "sheet".into(), shape: Shape::Rectangle(shape) },
-            Material::Tabulated(Box::new(sheet)),
-        )],
-        emitters: vec![("panel".into(), Emitter::Panel(panel))],
-        ..SceneParts::default()
-    };
-    (Scene::new(parts).unwrap(), albedo)
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface("sheet", shape.into(), Material::Tabulated(Box::new(sheet)))
+        .emitter("panel", Emitter::Panel(panel));
+    (scene.build().unwrap(), albedo)
 }
 
 #[test]

@@ -10,7 +10,7 @@ use caustix::files::lm63;
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::{Chooser, Coordinates, Purpose};
 use caustix::sample::method::Sampling;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Points;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
@@ -257,8 +257,14 @@ fn point(position: DVec3, flux_lm: f64) -> Emitter {
 }
 
 fn scene(surfaces: Vec<(Surface, Material)>, emitters: Vec<Emitter>) -> Scene {
-    let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp {i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, ..SceneParts::default() }).unwrap()
+    let mut scene = SceneBuilder::new();
+    for (surface, material) in surfaces {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    for (i, emitter) in emitters.into_iter().enumerate() {
+        scene.emitter(format!("lamp {i}"), emitter);
+    }
+    scene.build().unwrap()
 }
 
 fn floor(bsdf: Material) -> (Surface, Material) {

@@ -7,8 +7,8 @@ use caustix::emitter::{Collimated, Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface};
 use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
-use caustix::scene::camera::CameraSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::camera::{Camera, CameraSpec};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::surface::{Material, Reflectance};
 use glam::DVec3;
 
@@ -40,8 +40,17 @@ pub fn scene(
     emitters: Vec<Emitter>,
     camera: Option<CameraSpec>,
 ) -> Scene {
-    let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp{i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, camera, ..SceneParts::default() }).unwrap()
+    let mut scene = SceneBuilder::new();
+    for (surface, material) in surfaces {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    for (i, emitter) in emitters.into_iter().enumerate() {
+        scene.emitter(format!("lamp{i}"), emitter);
+    }
+    if let Some(camera) = camera {
+        scene.camera(Camera::new(camera).unwrap());
+    }
+    scene.build().unwrap()
 }
 
 pub fn plan(photons: u64, replicates: u32) -> Plan {
