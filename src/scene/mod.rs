@@ -12,7 +12,7 @@ use crate::emitter::colour::WHITE;
 use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
-use crate::surface::{Material, Tabulated};
+use crate::surface::{self, Material};
 
 use crate::files::scene_toml::description::Place;
 use camera::CameraSpec;
@@ -176,15 +176,6 @@ impl Scene {
     /// Bytes held by geometry, emitters and scattering tables.
     pub fn memory_bytes(&self) -> usize {
         let emitters: usize = self.emitters.as_slice().iter().map(Emitter::memory_bytes).sum();
-        let mut tables: Vec<&Tabulated> = Vec::new();
-        for material in &self.materials {
-            if let Material::Tabulated(table) = material
-                && !tables.iter().any(|other| other.shares_table_with(table))
-            {
-                tables.push(table);
-            }
-        }
-        let tables: usize = tables.into_iter().map(Tabulated::memory_bytes).sum();
-        self.geometry.memory_bytes() + emitters + tables
+        self.geometry.memory_bytes() + emitters + surface::memory_bytes(&self.materials)
     }
 }

@@ -24,7 +24,7 @@ use caustix::run::{Outcome, trace};
 use caustix::scene::camera::{CameraSpec, Filter, Method};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Material, Reflectance};
+use caustix::surface::{Material, Mirror, Reflectance};
 use glam::DVec3;
 
 use crate::support::judge::{SIGNIFICANCE, judge};
@@ -71,7 +71,7 @@ fn cup(inclination: f64, floor: Material, camera: Option<CameraSpec>) -> Scene {
         side: ReceiverSide::Front,
         events: ReceiverEvents::Indirect,
     };
-    let mirror = Material::Mirror { reflectance: Reflectance::grey(1.0) };
+    let mirror = Material::Mirror(Mirror::new(Reflectance::new(1.0).unwrap()));
     let plate = rectangle("floor", DVec3::NEG_Y, DVec3::X, DVec3::Y * 2.0);
     Scene::new(SceneParts {
         surfaces: vec![(plate, floor), (wall, mirror)],

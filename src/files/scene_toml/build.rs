@@ -14,7 +14,7 @@ use crate::geometry::{
     Surface, Transform, Wave, box_mesh,
 };
 use crate::surface::tabulated::Options;
-use crate::surface::{Dielectric, Material, Reference, Tabulated};
+use crate::surface::{Material, Reference, Tabulated};
 
 use crate::files::scene_toml::MOST_HEIGHTFIELD_CELLS;
 use crate::files::scene_toml::description::{
@@ -118,12 +118,7 @@ fn identity(description: &Description) -> Identity {
 
 fn material(d: &Description, kind: &MaterialKind, warnings: &mut Vec<Diagnostic>) -> Result<Material> {
     Ok(match kind {
-        MaterialKind::Dielectric { ior, ior_outside } => {
-            Material::Dielectric(Dielectric { ior_outside: *ior_outside, ior: *ior })
-        }
-        MaterialKind::Mirror { reflectance } => Material::Mirror { reflectance: *reflectance },
-        MaterialKind::Lambertian { reflectance } => Material::Lambertian { reflectance: *reflectance },
-        MaterialKind::Absorber => Material::Absorber,
+        MaterialKind::Plain(material) => material.clone(),
         MaterialKind::Tabulated(tabulated) => {
             let file = &tabulated.file;
             // Messages name the file by its path, or as it is written in a scene without a folder.

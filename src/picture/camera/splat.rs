@@ -20,8 +20,7 @@ use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Filter};
-use crate::surface::value::Leg;
-use crate::surface::{Material, luminance, luminance_of};
+use crate::surface::{Leg, Material, luminance, luminance_of};
 
 use crate::picture::camera::film;
 use crate::picture::camera::film::Film;
