@@ -13,7 +13,7 @@ use crate::emitter::colour::WHITE;
 use crate::emitter::{Emitter, Emitters};
 use crate::error::Diagnostic;
 use crate::geometry::{Geometry, SurfaceId, Whereabouts};
-use crate::surface::{Material, Tabulated};
+use crate::surface::{self, Material};
 
 pub use builder::SceneBuilder;
 use camera::Camera;
@@ -97,15 +97,6 @@ impl Scene {
     /// Bytes held by geometry, emitters and scattering tables.
     pub fn memory_bytes(&self) -> usize {
         let emitters: usize = self.emitters.as_slice().iter().map(Emitter::memory_bytes).sum();
-        let mut tables: Vec<&Tabulated> = Vec::new();
-        for material in &self.materials {
-            if let Material::Tabulated(table) = material
-                && !tables.iter().any(|other| other.shares_table_with(table))
-            {
-                tables.push(table);
-            }
-        }
-        let tables: usize = tables.into_iter().map(Tabulated::memory_bytes).sum();
-        self.geometry.memory_bytes() + emitters + tables
+        self.geometry.memory_bytes() + emitters + surface::memory_bytes(&self.materials)
     }
 }

@@ -65,13 +65,7 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
             return End::Escaped;
         };
         sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
-        let sign = if hit.front { 1.0 } else { -1.0 };
-        let at = Incidence {
-            direction,
-            facet: hit.normal * sign,
-            smooth: hit.shading_normal * sign,
-            front: hit.front,
-        };
+        let at = Incidence::of(&hit, direction);
         match scene.material(hit.surface).scatter(&at, chooser, &mut carried) {
             Event::Absorbed => return End::Absorbed(hit.surface),
             Event::BelowHorizon => {
@@ -88,3 +82,6 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     }
     End::Killed
 }
+
+#[cfg(test)]
+mod tests;

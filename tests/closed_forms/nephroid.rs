@@ -24,7 +24,7 @@ use caustix::scene::camera::{Camera, CameraSpec, Filter, Method};
 use caustix::scene::receiver::ReceiverEvents;
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneBuilder};
-use caustix::surface::{Material, Reflectance};
+use caustix::surface::{Material, Mirror, Reflectance};
 use glam::DVec3;
 
 use crate::support::judge::{SIGNIFICANCE, judge};
@@ -68,7 +68,7 @@ fn cup(inclination: f64, floor: Material, camera: Option<CameraSpec>) -> Scene {
         let spec = ReceiverSpec::new(name, "floor").unwrap().with_cells(cells).unwrap();
         spec.of_events(ReceiverEvents::Indirect)
     };
-    let mirror = Material::Mirror { reflectance: Reflectance::grey(1.0) };
+    let mirror = Material::Mirror(Mirror::new(Reflectance::new(1.0).unwrap()));
     let plate = rectangle("floor", DVec3::NEG_Y, DVec3::X, DVec3::Y * 2.0);
     let mut scene = SceneBuilder::new();
     scene

@@ -10,7 +10,7 @@ use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::surface::tabulated::{Energy, Options, Sides};
-use caustix::surface::{Grey, Material, Reference, Reflectance, Tabulated};
+use caustix::surface::{Grey, Lambertian, Material, Reference, Reflectance, Tabulated};
 use caustix::transport::census::Exceptions;
 use caustix::transport::{Arrival, End, Sink, walk};
 use glam::DVec3;
@@ -59,7 +59,7 @@ fn a_tabulated_diffuser_is_a_lambertian_surface() {
         other => panic!("{other:?}"),
     };
     assert!((albedo(0) / 0.7 - 1.0).abs() < 3e-5 && (albedo(1) / 0.5 - 1.0).abs() < 3e-5);
-    let matt = |part| Material::Lambertian { reflectance: Reflectance::grey(part) };
+    let matt = |part| Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()));
     let formula = room(matt(albedo(0)), matt(albedo(1)));
     let replicates = 32;
     let a = run(&tables, Sequence::SobolOwen, 1 << 13, replicates, 1);

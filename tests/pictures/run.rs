@@ -11,7 +11,7 @@ use caustix::scene::Identity;
 use caustix::scene::camera::{Bandwidth, Camera, CameraSpec};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneBuilder};
-use caustix::surface::{Dielectric, Material, Reflectance};
+use caustix::surface::{Dielectric, Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
@@ -27,7 +27,7 @@ fn ball_on_table(wall: Material, memory_bytes: u64, with_camera: bool) -> Scene 
     };
     let table = rectangle("table", DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
     let back = rectangle("wall", DVec3::new(-1.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 1.5);
-    let glass = Material::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let mut scene = SceneBuilder::new();
     let ball = sphere("ball", DVec3::new(0.1, 0.2, 0.35), 0.25);
     for (surface, material) in [(table, grey(0.5)), (back, wall), (ball, glass)] {
@@ -92,7 +92,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
 
 #[test]
 fn colour_takes_three_channels_and_its_luminance_is_that_of_the_weights() {
-    let red = Material::Lambertian { reflectance: Reflectance::rgb([0.9, 0.1, 0.1]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.9, 0.1, 0.1]).unwrap()));
     let scene = ball_on_table(red, ROOM, true);
     let plan = plan(1 << 14, 2);
     let (_, picture) = trace_picture(&scene, &plan, true, unwatched(&AtomicBool::new(false))).unwrap();

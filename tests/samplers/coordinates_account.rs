@@ -14,7 +14,7 @@ use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Points;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
-use caustix::surface::{Dielectric, Grey, Material, Reflectance};
+use caustix::surface::{Dielectric, Grey, Lambertian, Material, Mirror, Reflectance};
 use caustix::transport::census::{Exceptions, LONGEST_DIMENSION};
 use caustix::transport::parallel::{How, trace_range};
 use caustix::transport::{Arrival, End, Sink, walk};
@@ -51,17 +51,20 @@ impl Sink for Watch<'_> {
     fn arrive(&mut self, arrival: &Arrival<'_>) {
         let seen = &mut self.seen;
         let count = match self.scene.material(arrival.hit.surface) {
-            Material::Dielectric(Dielectric { ior, ior_outside }) => {
+            Material::Dielectric(glass) => {
                 // Snell: n1 sin(i) >= n2 leaves no way through. The cross product gives the sine.
                 let sine = arrival.direction.cross(arrival.hit.normal).length();
-                let (n1, n2) = if arrival.hit.front { (ior_outside, ior) } else { (ior, ior_outside) };
-                if n1 * sine >= *n2 { &mut seen.total_reflections } else { &mut seen.fresnel }
+                let (outside, inside) = (glass.ior_outside(), glass.ior());
+                let (n1, n2) = if arrival.hit.front { (outside, inside) } else { (inside, outside) };
+                if n1 * sine >= n2 { &mut seen.total_reflections } else { &mut seen.fresnel }
             }
-            Material::Mirror { reflectance } if reflectance.luminous() == 1.0 => &mut seen.perfect_mirror,
-            Material::Mirror { .. } => &mut seen.mirror,
-            Material::Lambertian { reflectance } if reflectance.luminous() == 1.0 => &mut seen.white,
-            Material::Lambertian { .. } => &mut seen.lambertian,
-            Material::Tabulated(_) => unreachable!("no table in these scenes"),
+            Material::Mirror(mirror) if mirror.reflectance().luminous() == 1.0 => &mut seen.perfect_mirror,
+            Material::Mirror(_) => &mut seen.mirror,
+            Material::Lambertian(wall) if wall.reflectance().luminous() == 1.0 => &mut seen.white,
+            Material::Lambertian(_) => &mut seen.lambertian,
+            Material::Tabulated(_) => {
+                unreachable!("no table in these scenes")
+            }
             Material::Absorber => &mut seen.absorber,
         };
         *count += 1;
@@ -137,7 +140,7 @@ fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, t
     let seen = watch.seen;
     let absorbed_by_chance = matches!(end, End::Absorbed(s) if !matches!(scene.material(s), Material::Absorber))
         && chooser.refused_last;
-    let by_mirror = matches!(end, End::Absorbed(s) if matches!(scene.material(s), Material::Mirror { .. }))
+    let by_mirror = matches!(end, End::Absorbed(s) if matches!(scene.material(s), Material::Mirror(_)))
         && absorbed_by_chance;
     let by_diffuse = absorbed_by_chance && !by_mirror;
 
@@ -242,7 +245,7 @@ fn surface(name: &str, shape: Shape, bsdf: Material) -> (Surface, Material) {
 }
 
 fn glass_box(min: DVec3, max: DVec3) -> (Surface, Material) {
-    let glass = Material::Dielectric(Dielectric { ior: 1.5, ior_outside: 1.0 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     surface("glass", Shape::Mesh(box_mesh(min, max).unwrap()), glass)
 }
 
@@ -294,7 +297,11 @@ fn a_glass_slab_over_an_absorbing_floor() {
 fn a_diffuse_sphere_from_inside() {
     let sphere = |reflectance| {
         let shape = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0).unwrap());
-        surface("sphere", shape, Material::Lambertian { reflectance: Reflectance::grey(reflectance) })
+        surface(
+            "sphere",
+            shape,
+            Material::Lambertian(Lambertian::new(Reflectance::new(reflectance).unwrap())),
+        )
     };
     let inside = DVec3::new(0.2, -0.3, 0.1);
     let simple = scene(vec![sphere(0.8)], vec![point(inside, 100.0)]);
@@ -306,7 +313,7 @@ fn a_diffuse_sphere_from_inside() {
 
     // Long paths through glass spend more than the 40 bits of one coordinate: the 24-bit rule is at work.
     let ball = Shape::Sphere(Sphere::new(DVec3::new(0.0, 0.0, -0.4), 0.4).unwrap());
-    let glass = Material::Dielectric(Dielectric { ior: 1.5, ior_outside: 1.0 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let lamp = table_lamp("spot.ies", DVec3::new(0.0, 0.1, 0.5));
     let long = scene(vec![sphere(0.99), surface("ball", ball, glass)], vec![lamp, point(inside, 500.0)]);
     let [reuse, _] = check_scene("white sphere, glass ball", &long, 1 << 11);
@@ -317,7 +324,7 @@ fn a_diffuse_sphere_from_inside() {
 fn a_mirror_box_with_a_block_of_glass() {
     let mirror = |name: &str, half: f64, reflectance| {
         let shape = Shape::Mesh(box_mesh(DVec3::splat(-half), DVec3::splat(half)).unwrap());
-        surface(name, shape, Material::Mirror { reflectance: Reflectance::grey(reflectance) })
+        surface(name, shape, Material::Mirror(Mirror::new(Reflectance::new(reflectance).unwrap())))
     };
     let lamp = || point(DVec3::new(0.31, -0.27, 0.63), 100.0);
     check_scene("mirror box", &scene(vec![mirror("box", 1.0, 0.9)], vec![lamp()]), 1 << 13);
@@ -331,7 +338,7 @@ fn a_mirror_box_with_a_block_of_glass() {
     // Perfect mirrors and perfect white surfaces draw nothing for the event.
     let open = vec![
         mirror("block", 0.4, 1.0),
-        floor_below(Material::Lambertian { reflectance: Reflectance::grey(1.0) }),
+        floor_below(Material::Lambertian(Lambertian::new(Reflectance::new(1.0).unwrap()))),
     ];
     check_scene(
         "perfect mirror, white floor",

@@ -9,7 +9,7 @@ use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
 use caustix::scene::camera::{Camera, CameraSpec};
 use caustix::scene::{Scene, SceneBuilder};
-use caustix::surface::{Material, Reflectance};
+use caustix::surface::{Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 pub fn rectangle(name: &str, corner: DVec3, u: DVec3, v: DVec3) -> Surface {
@@ -21,7 +21,7 @@ pub fn sphere(name: &str, centre: DVec3, radius: f64) -> Surface {
 }
 
 pub fn grey(part: f64) -> Material {
-    Material::Lambertian { reflectance: Reflectance::grey(part) }
+    Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()))
 }
 
 /// A square beam of this half width.

@@ -22,8 +22,7 @@ use crate::picture::photon_map::Channels;
 use crate::picture::photon_map::sink::scattering_surfaces;
 use crate::scene::Scene;
 use crate::scene::camera::{Camera, Filter};
-use crate::surface::value::Leg;
-use crate::surface::{Material, luminance, luminance_of};
+use crate::surface::{Leg, Material, luminance, luminance_of};
 use crate::tally::{ReceiverSink, WideSum};
 use crate::transport::{Arrival, Sink};
 

@@ -161,16 +161,6 @@ impl Tabulated {
         self.face(from_front).layers[1].is_some()
     }
 
-    /// Bytes held by the tables, which copies share.
-    pub fn memory_bytes(&self) -> usize {
-        self.layers.iter().map(|layer| layer.grids.memory_bytes()).sum()
-    }
-
-    /// Whether both are copies of one surface, which share its table.
-    pub fn shares_table_with(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.layers, &other.layers)
-    }
-
     fn face(&self, from_front: bool) -> &Face {
         &self.faces[usize::from(!from_front)]
     }
@@ -231,7 +221,7 @@ impl Tabulated {
         let albedo = branches.add_grey(layers, theta, phi);
         let fate = if face.rest.is_some() {
             carried.scatter([albedo; 3], true, chooser)
-        } else if carried.reflect(&Reflectance::grey(albedo), chooser) {
+        } else if carried.reflect(&Reflectance::of_table(albedo), chooser) {
             Fate::Scattered(LUMINANCE_OF_RGB)
         } else {
             Fate::Ends
@@ -292,17 +282,6 @@ fn outcome(left: &Left) -> Event {
     }
     let through = left.quantity == Quantity::Transmission;
     Event::Leaves { direction: left.wo.normalize(), through, corrected: false }
-}
-
-impl Tabulated {
-    /// What a photon of white light at a surface costs by rejection, on average over whether it is scattered: proposals (inside
-    /// a cell, against a slice's largest value).
-    pub fn proposals(&self, at: &Incidence) -> (f64, f64) {
-        let face = self.face(at.front);
-        let along = || self.along(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, along);
-        self.lobes(face, &arrival, along).proposals(face.coloured.then_some(LUMINANCE_OF_RGB))
-    }
 }
 
 /// The same in a local frame: z the normal on the side that light comes from, x the table's reference direction on it. wi is
