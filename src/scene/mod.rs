@@ -5,11 +5,11 @@
 
 pub mod camera;
 pub mod check;
+mod figure;
 pub mod receiver;
 pub mod requires;
 
-use crate::emitter::colour::WHITE;
-use crate::emitter::{Emitter, Emitters};
+use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
 use crate::surface::{Bsdf, Tabulated};
@@ -52,7 +52,7 @@ pub struct Scene {
     pub warnings: Vec<Diagnostic>,
     bsdfs: Vec<Bsdf>,
     starts: Vec<Whereabouts>,
-    emitter_colours: Vec<[f64; 3]>,
+    emitter_colours: Vec<Colour>,
 }
 
 /// The parts of a scene, for those who build one in code.
@@ -62,8 +62,8 @@ pub struct SceneParts {
     pub surfaces: Vec<(Surface, Bsdf)>,
     /// Emitters with their names.
     pub emitters: Vec<(String, Emitter)>,
-    /// Colours of the emitters, linear sRGB of luminance 1 ([`crate::emitter::colour`]); emitters beyond the last are white.
-    pub emitter_colours: Vec<[f64; 3]>,
+    /// Colours of the emitters; emitters beyond the last are white.
+    pub emitter_colours: Vec<Colour>,
     /// Receivers.
     pub receivers: Vec<ReceiverSpec>,
     /// The fixed number of reflections of `[compare]`, if there is one.
@@ -120,7 +120,7 @@ impl Scene {
                 Err(e) => errors.push(check::at_place(&parts.places.emitters, i, e)),
             }
         }
-        let emitters = Emitters::new(emitters).map_err(|e| errors.push(e)).ok();
+        let emitters = Emitters::new(emitters).map_err(|e| errors.push(e.into())).ok();
         match emitters {
             Some(emitters) if errors.is_empty() => Ok(Self {
                 geometry,
@@ -152,7 +152,7 @@ impl Scene {
 
     /// Whether anything in it treats channels differently: then photons carry a weight for each.
     pub fn is_coloured(&self) -> bool {
-        let has_colour = |colour: &[f64; 3]| *colour != WHITE;
+        let has_colour = |colour: &Colour| *colour != Colour::WHITE;
         let [r, g, b] = self.camera.as_ref().map_or([0.0; 3], |camera| camera.background_cd_m2);
         self.bsdfs.iter().any(Bsdf::is_coloured)
             || self.emitter_colours.iter().any(has_colour)
@@ -164,7 +164,7 @@ impl Scene {
     #[inline]
     pub fn emitter_colour(&self, emitter: usize) -> [f64; 3] {
         // No index that could fail, so that a walk which carries no colour does not even look.
-        self.emitter_colours.get(emitter).copied().unwrap_or(WHITE)
+        self.emitter_colours.get(emitter).copied().unwrap_or_default().channels()
     }
 
     /// The side state of photons that leave an emitter.

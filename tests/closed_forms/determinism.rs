@@ -267,7 +267,7 @@ fn a_photon_lost_on_purpose_is_seen() {
         let mut ledger = Ledger::new(1, scene.geometry.surfaces().len());
         for index in 0..n {
             let mut coordinates = Coordinates::new(&points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
             ledger.begin(emitter);
             let mut exceptions = Exceptions::default();
             let start = scene.start(emitter);

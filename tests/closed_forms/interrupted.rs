@@ -15,7 +15,7 @@ fn lamp_over_floor() -> Scene {
     let corner = DVec3::new(-1e6, -1e6, 0.0);
     let floor = Rectangle::new(corner, DVec3::X * 2e6, DVec3::Y * 2e6).unwrap();
     let surface = Surface { name: "floor".into(), shape: Shape::Rectangle(floor) };
-    let lamp = Emitter::Isotropic(Isotropic { position: DVec3::Z, flux_lm: 1000.0 });
+    let lamp = Emitter::Isotropic(Isotropic::new(DVec3::Z, 1000.0).unwrap());
     let parts = SceneParts {
         surfaces: vec![(surface, Bsdf::Absorber)],
         emitters: vec![("lamp".into(), lamp)],

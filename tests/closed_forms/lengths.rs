@@ -10,7 +10,8 @@ pub fn scaled(mut d: Description, s: f64) -> Description {
     for e in &mut d.emitters {
         e.position.value *= s;
         match &mut e.shape {
-            EmitterShape::Collimated { section: BeamSection::Disc { radius } } => *radius *= s,
+            EmitterShape::Disc { radius }
+            | EmitterShape::Collimated { section: BeamSection::Disc { radius } } => *radius *= s,
             EmitterShape::Collimated { section: BeamSection::Rectangle { width, height } }
             | EmitterShape::Panel { width, height } => {
                 *width *= s;

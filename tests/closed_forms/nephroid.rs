@@ -14,8 +14,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::AtomicBool;
 
-use caustix::emitter::collimated::CrossSection;
-use caustix::emitter::{Collimated, Emitter};
+use caustix::emitter::{AimFrame, Beam, BeamSection, Emitter};
 use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use caustix::geometry::{Mesh, MeshParts, Smoothing};
 use caustix::geometry::{Shape, Surface};
@@ -61,7 +60,8 @@ fn cup(inclination: f64, floor: Bsdf, camera: Option<CameraSpec>) -> Scene {
     let (sin, cos) = inclination.sin_cos();
     let (direction, across) = (DVec3::new(sin, 0.0, -cos), DVec3::new(cos, 0.0, sin));
     let width = 1.02 * (cos + height * sin);
-    let section = CrossSection::Rectangle(across * (0.5 * width), DVec3::Y * 1.01);
+    let section = BeamSection::Rectangle { width, height: 2.02 };
+    let frame = AimFrame::new(direction, Some(DVec3::Y)).unwrap();
     let centre = across * (0.5 * width - 0.01) - direction * 3.0;
     let flux_lm = width * 2.02;
     let receiver = |name: &str, cells| ReceiverSpec {
@@ -75,10 +75,7 @@ fn cup(inclination: f64, floor: Bsdf, camera: Option<CameraSpec>) -> Scene {
     let plate = rectangle("floor", DVec3::NEG_Y, DVec3::X, DVec3::Y * 2.0);
     Scene::new(SceneParts {
         surfaces: vec![(plate, floor), (wall, mirror)],
-        emitters: vec![(
-            "sun".into(),
-            Emitter::Collimated(Collimated { centre, direction, section, flux_lm }),
-        )],
+        emitters: vec![("sun".into(), Emitter::Beam(Beam::new(centre, frame, section, flux_lm).unwrap()))],
         receivers: vec![
             receiver("fine", [FINE, 2 * FINE]),
             receiver("coarse", [COARSE, 2 * COARSE]),

@@ -2,9 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::emitter::collimated::CrossSection;
-use crate::emitter::colour::{WHITE, normalised, planckian};
-use crate::emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
+use crate::emitter::{AreaLight, Beam, Colour, Disc, Emitter, Isotropic, Panel, Photometric};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::lm63;
 use crate::files::obj::{ObjOptions, parse_obj};
@@ -18,9 +16,8 @@ use crate::surface::{Bsdf, Dielectric, Reference, Tabulated};
 
 use crate::files::scene_toml::MOST_HEIGHTFIELD_CELLS;
 use crate::files::scene_toml::description::{
-    BeamSection, ColourDescription, Description, EmitterDescription, EmitterShape, Facing,
-    HeightfieldDescription, MaterialKind, Place, Placed, ReliefDescription, ShapeDescription,
-    SurfaceDescription,
+    ColourDescription, Description, EmitterDescription, EmitterShape, Facing, HeightfieldDescription,
+    MaterialKind, Place, Placed, ReliefDescription, ShapeDescription, SurfaceDescription,
 };
 use crate::files::scene_toml::source::sha256_hex;
 use crate::scene::receiver::ReceiverSpec;
@@ -62,10 +59,12 @@ pub fn build(description: &Description) -> std::result::Result<Scene, Vec<Diagno
         }
     }
     for e in &description.emitters {
-        match emitter(description, e, &mut parts.warnings) {
-            Ok(emitter) => {
+        let built = emitter(description, e, &mut parts.warnings)
+            .and_then(|emitter| Ok((emitter, colour(description, e, &mut parts.warnings)?)));
+        match built {
+            Ok((emitter, colour)) => {
                 parts.emitters.push((e.name.clone(), emitter));
-                parts.emitter_colours.push(colour(description, e, &mut parts.warnings));
+                parts.emitter_colours.push(colour);
             }
             Err(error) => errors.push(placed(description, e.place, error)),
         }
@@ -258,9 +257,9 @@ fn heightfield(d: &Description, field: &HeightfieldDescription) -> Result<Height
 }
 
 fn emitter(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnostic>) -> Result<Emitter> {
-    let position = e.position.value;
-    let (aim, up) = (e.frame.aim, e.frame.up);
-    match &e.shape {
+    let (position, frame) = (e.position.value, e.frame);
+    let flux_lm = || required_flux(e);
+    Ok(match &e.shape {
         EmitterShape::Photometric { file } => {
             let bytes = d.load(file)?;
             let path = d.source.path(&file.value);
@@ -269,41 +268,36 @@ fn emitter(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnosti
                 None => lm63::parse(&bytes, &file.value)?,
             };
             warnings.extend(photometry.warnings.iter().cloned());
-            let emitter = Photometric::new(&photometry, position, aim, up, e.flux_lm);
+            let emitter = Photometric::new(&photometry, position, frame, e.flux_lm);
             let name = path.map_or_else(|| file.value.clone(), |p| p.display().to_string());
-            Ok(Emitter::Photometric(Box::new(emitter.map_err(|error| error.in_file(name))?)))
+            Emitter::Photometric(emitter.map_err(|error| Diagnostic::from(error).in_file(name))?)
         }
-        EmitterShape::Isotropic => Ok(Emitter::Isotropic(Isotropic { position, flux_lm: required_flux(e)? })),
+        EmitterShape::Isotropic => Emitter::Isotropic(Isotropic::new(position, flux_lm()?)?),
         EmitterShape::Collimated { section } => {
-            let across: DVec3 = aim.cross(up);
-            let section = match section {
-                BeamSection::Disc { radius } => CrossSection::Disc(across * *radius, up * *radius),
-                BeamSection::Rectangle { width, height } => {
-                    CrossSection::Rectangle(across * (0.5 * width), up * (0.5 * height))
-                }
-            };
-            let flux_lm = required_flux(e)?;
-            Ok(Emitter::Collimated(Collimated { centre: position, direction: aim, section, flux_lm }))
+            Emitter::Beam(Beam::new(position, frame, *section, flux_lm()?)?)
         }
         EmitterShape::Panel { width, height } => {
-            Ok(Emitter::Panel(Panel::new(position, aim, up, [*width, *height], required_flux(e)?)))
+            Emitter::Panel(AreaLight::new(position, frame, Panel::new([*width, *height])?, flux_lm()?)?)
         }
-    }
+        EmitterShape::Disc { radius } => {
+            Emitter::Disc(AreaLight::new(position, frame, Disc::new(*radius)?, flux_lm()?)?)
+        }
+    })
 }
 
 /// The colour of an emitter's light; what no sRGB colour can show is clipped and said.
-fn colour(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnostic>) -> [f64; 3] {
-    let Some(Placed { value, place }) = e.colour else { return WHITE };
+fn colour(d: &Description, e: &EmitterDescription, warnings: &mut Vec<Diagnostic>) -> Result<Colour> {
+    let Some(Placed { value, place }) = e.colour else { return Ok(Colour::WHITE) };
     match value {
-        ColourDescription::Rgb(rgb) => normalised(rgb).unwrap_or(WHITE),
+        ColourDescription::Rgb(rgb) => Ok(Colour::new(rgb)?),
         ColourDescription::Cct(cct_k) => {
-            let (rgb, clipped) = planckian(cct_k);
+            let (colour, clipped) = Colour::black_body(cct_k)?;
             if clipped {
                 let found = format!("cct_k = {cct_k}, a light more saturated than sRGB can show");
                 let required = "about 1900 K or more; its blue is taken as 0 instead of below";
                 warnings.push(d.diagnostic(place, Kind::Range, found, required));
             }
-            rgb
+            Ok(colour)
         }
     }
 }

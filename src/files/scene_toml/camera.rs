@@ -5,7 +5,8 @@ use glam::DVec3;
 use crate::error::Kind;
 use crate::files::scene_toml::description::CameraDescription;
 use crate::files::scene_toml::toml_table::{Interval, Table};
-use crate::files::scene_toml::{COORDINATE, DIRECTION, LENGTH, orthogonal_part, unit};
+use crate::files::scene_toml::{COORDINATE, DIRECTION, LENGTH, unit};
+use crate::math::frame::orthogonal_part;
 use crate::scene::camera::{Bandwidth, CameraSpec, Exposure, Filter, Kernel, Method};
 
 /// Most pixels: 2^26, an image of 8192 x 8192.

@@ -7,6 +7,8 @@
 
 use glam::DVec3;
 
+use crate::emitter::AimFrame;
+pub use crate::emitter::BeamSection;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::scene_toml::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
 use crate::scene::camera::CameraSpec;
@@ -105,7 +107,10 @@ impl Description {
     pub fn files(&self) -> impl Iterator<Item = &Placed<String>> {
         let emitters = self.emitters.iter().filter_map(|e| match &e.shape {
             EmitterShape::Photometric { file, .. } => Some(file),
-            EmitterShape::Isotropic | EmitterShape::Collimated { .. } | EmitterShape::Panel { .. } => None,
+            EmitterShape::Isotropic
+            | EmitterShape::Collimated { .. }
+            | EmitterShape::Panel { .. }
+            | EmitterShape::Disc { .. } => None,
         });
         let materials = self.materials.iter().filter_map(|m| match &m.kind {
             MaterialKind::Tabulated(tabulated) => Some(&tabulated.file),
@@ -136,10 +141,10 @@ impl Description {
 pub struct EmitterDescription {
     /// Unique; `emitter 1`, `emitter 2`, ... where the file gives none.
     pub name: String,
-    /// The photometric centre, or the centre of a beam's cross-section or of a panel, in metres.
+    /// The photometric centre, or the centre of a beam's cross-section or of an area light, in metres.
     pub position: Placed<DVec3>,
     /// Frame; `aim` -z and `up` y for isotropic emitters, where it means nothing.
-    pub frame: Frame,
+    pub frame: AimFrame,
     /// Flux in lumens; `None` (photometric emitters only): the file's candela as they stand.
     pub flux_lm: Option<f64>,
     /// Colour of its light; `None`: white.
@@ -157,16 +162,6 @@ pub enum ColourDescription {
     Rgb([f64; 3]),
     /// That of a black body of this temperature, K.
     Cct(f64),
-}
-
-/// The directions of an emitter: orthogonal unit vectors.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
-    /// Unit vector of the direction (V, H) = (0, 0), for types A, B and C alike.
-    pub aim: DVec3,
-    /// Unit vector orthogonal to `aim`. Type C: towards which H = 0 tilts; types A and B: towards which V
-    /// grows.
-    pub up: DVec3,
 }
 
 /// What an emitter is.
@@ -191,22 +186,10 @@ pub enum EmitterShape {
         /// Extent along up, in metres.
         height: f64,
     },
-}
-
-/// Cross-section of a collimated beam, about the emitter's position.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum BeamSection {
-    /// A disc.
+    /// The same of a disc.
     Disc {
-        /// Radius in metres.
+        /// In metres.
         radius: f64,
-    },
-    /// A rectangle.
-    Rectangle {
-        /// Extent along aim x up, in metres.
-        width: f64,
-        /// Extent along up, in metres.
-        height: f64,
     },
 }
 

@@ -1,15 +1,16 @@
-//! `[[emitter]]`: photometric, isotropic, collimated, panel.
+//! `[[emitter]]`: photometric, isotropic, collimated, panel, disc.
 
 use glam::DVec3;
 
 use crate::emitter::colour::CCT_RANGE_K;
+use crate::emitter::{AimFrame, BeamSection};
 use crate::error::Kind;
 use crate::files::scene_toml::description::{
-    BeamSection, ColourDescription, EmitterDescription, EmitterShape, Frame, Place, Placed,
+    ColourDescription, EmitterDescription, EmitterShape, Place, Placed,
 };
 use crate::files::scene_toml::names::Names;
 use crate::files::scene_toml::toml_table::{Interval, Table};
-use crate::files::scene_toml::{COORDINATE, LENGTH, direction, orthogonal_part};
+use crate::files::scene_toml::{COORDINATE, DIRECTION, LENGTH};
 
 const FLUX: Interval = Interval { low: 1e-9, high: 1e12, words: "a flux from 1e-9 to 1e12 lm" };
 
@@ -26,13 +27,15 @@ enum Type {
     Isotropic,
     Collimated,
     Panel,
+    Disc,
 }
 
-const TYPES: [(&str, Type); 4] = [
+const TYPES: [(&str, Type); 5] = [
     ("photometric", Type::Photometric),
     ("isotropic", Type::Isotropic),
     ("collimated", Type::Collimated),
     ("panel", Type::Panel),
+    ("disc", Type::Disc),
 ];
 
 pub(crate) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterDescription> {
@@ -43,12 +46,14 @@ pub(crate) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
     names.insert(table.document(), &name, name_place, index);
 
     let kind = table.word("type", &TYPES);
-    let kind = table.require("type", kind, "\"photometric\", \"isotropic\", \"collimated\" or \"panel\"")?;
+    let words = "\"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"";
+    let kind = table.require("type", kind, words)?;
     table.call(match kind {
         Type::Photometric => "a photometric [[emitter]]",
         Type::Isotropic => "an isotropic [[emitter]]",
         Type::Collimated => "a collimated [[emitter]]",
         Type::Panel => "a panel [[emitter]]",
+        Type::Disc => "a disc [[emitter]]",
     });
 
     let position = table.vector("position", &COORDINATE);
@@ -62,7 +67,7 @@ pub(crate) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
         }
         Type::Isotropic => {
             table.require("flux_lm", flux_lm, FLUX.words);
-            (Some(EmitterShape::Isotropic), Some(Frame { aim: DVec3::NEG_Z, up: DVec3::Y }))
+            (Some(EmitterShape::Isotropic), AimFrame::new(DVec3::NEG_Z, None).ok())
         }
         Type::Collimated => {
             table.require("flux_lm", flux_lm, FLUX.words);
@@ -74,6 +79,12 @@ pub(crate) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
             let size = table.numbers::<2>("size", &LENGTH);
             let size = table.require("size", size, "[width, height] in metres");
             (size.map(|[width, height]| EmitterShape::Panel { width, height }), read_frame(&mut table))
+        }
+        Type::Disc => {
+            table.require("flux_lm", flux_lm, FLUX.words);
+            let radius = table.number("radius", &LENGTH);
+            let radius = table.require("radius", radius, "... in metres");
+            (radius.map(|radius| EmitterShape::Disc { radius }), read_frame(&mut table))
         }
     };
     table.finish();
@@ -110,19 +121,14 @@ fn read_colour(table: &mut Table<'_, '_>) -> Option<Placed<ColourDescription>> {
 }
 
 /// `aim` and `up`, made orthogonal.
-fn read_frame(table: &mut Table<'_, '_>) -> Option<Frame> {
-    let aim = direction(table, "aim", Some(DVec3::NEG_Z));
-    let is_given = table.place_of("up").is_some();
-    let up = direction(table, "up", Some(DVec3::Y));
-    let (aim, up) = (aim?, up?);
-    if let Some(up) = orthogonal_part(up, aim) {
-        return Some(Frame { aim, up });
-    }
-    if is_given {
-        table.error("up", Kind::Range, "a direction that is not parallel to aim");
-        return None;
-    }
-    orthogonal_part(DVec3::X, aim).map(|up| Frame { aim, up })
+fn read_frame(table: &mut Table<'_, '_>) -> Option<AimFrame> {
+    let mut direction = |key| {
+        let vector = table.vector(key, &DIRECTION).map(|vector| vector.value);
+        (vector.is_some() || table.place_of(key).is_none()).then_some(vector)
+    };
+    let (aim, up) = (direction("aim"), direction("up"));
+    let frame = AimFrame::new(aim?.unwrap_or(DVec3::NEG_Z), up?);
+    frame.map_err(|e| table.error(e.what(), Kind::Range, e.required())).ok()
 }
 
 /// `radius`, or `size = [width, height]`.

@@ -223,16 +223,6 @@ fn unit(v: DVec3) -> Option<DVec3> {
     })
 }
 
-/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the
-/// angle between their lines is below 1e-9, where rounding would choose the direction.
-fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
-    let sine = v.cross(axis).length();
-    // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.
-    let once = unit(v - axis * v.dot(axis))?;
-    let part = unit(once - axis * once.dot(axis))?;
-    (sine >= 1e-9).then_some(part)
-}
-
 /// A required direction; the zero vector is an error.
 fn direction(table: &mut Table<'_, '_>, key: &'static str, default: Option<DVec3>) -> Option<DVec3> {
     const REQUIRED: &str = "a direction [x, y, z] that is not zero";
