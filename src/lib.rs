@@ -86,7 +86,9 @@ pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Sum
 pub use files::bsdf::{parse as parse_scattering, read as read_scattering};
 pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 // Scenes:
-pub use emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
+pub use emitter::{
+    AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emits, Emitter, Isotropic, Panel, Photometric,
+};
 pub use files::scene_toml::read_scene;
 pub use geometry::{
     Facing, Formula, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing, Sphere,

@@ -2,8 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::emitter::colour::WHITE;
-use crate::emitter::{Emitter, Emitters};
+use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::{Diagnostic, Kind, Place};
 use crate::geometry::{Geometry, Shape, Surface, coincident_surfaces};
 use crate::surface::Material;
@@ -16,7 +15,7 @@ use super::{Identity, Scene, check};
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
     surfaces: Vec<(Surface, Material, Option<Place>)>,
-    emitters: Vec<(String, Emitter, [f64; 3], Option<Place>)>,
+    emitters: Vec<(String, Emitter, Colour, Option<Place>)>,
     receivers: Vec<(ReceiverSpec, Option<Place>)>,
     camera: Option<Camera>,
     compared_reflections: Option<u32>,
@@ -43,15 +42,15 @@ impl SceneBuilder {
 
     /// An emitter of white light, of its own name.
     pub fn emitter(&mut self, name: impl Into<String>, emitter: Emitter) -> &mut Self {
-        self.coloured_emitter(name, emitter, WHITE)
+        self.coloured_emitter(name, emitter, Colour::WHITE)
     }
 
-    /// An emitter of its own name. `colour` is linear sRGB of luminance 1 ([`crate::emitter::colour`]).
+    /// An emitter of its own name.
     pub fn coloured_emitter(
         &mut self,
         name: impl Into<String>,
         emitter: Emitter,
-        colour: [f64; 3],
+        colour: Colour,
     ) -> &mut Self {
         self.emitters.push((name.into(), emitter, colour, self.place));
         self
@@ -143,7 +142,7 @@ impl SceneBuilder {
             }),
             Ok(_) => Err(errors),
             Err(e) => {
-                errors.push(e);
+                errors.push(e.into());
                 Err(errors)
             }
         }

@@ -6,11 +6,11 @@
 pub mod builder;
 pub mod camera;
 pub mod check;
+mod figure;
 pub mod receiver;
 pub mod requires;
 
-use crate::emitter::colour::WHITE;
-use crate::emitter::{Emitter, Emitters};
+use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::Diagnostic;
 use crate::geometry::{Geometry, SurfaceId, Whereabouts};
 use crate::surface::{self, Material};
@@ -56,7 +56,7 @@ pub struct Scene {
     pub warnings: Vec<Diagnostic>,
     materials: Vec<Material>,
     starts: Vec<Whereabouts>,
-    emitter_colours: Vec<[f64; 3]>,
+    emitter_colours: Vec<Colour>,
 }
 
 impl Scene {
@@ -73,7 +73,7 @@ impl Scene {
 
     /// Whether anything in it treats channels differently: then photons carry a weight for each.
     pub fn is_coloured(&self) -> bool {
-        let has_colour = |colour: &[f64; 3]| *colour != WHITE;
+        let has_colour = |colour: &Colour| *colour != Colour::WHITE;
         let [r, g, b] = self.camera.as_ref().map_or([0.0; 3], |camera| camera.background_cd_m2);
         self.materials.iter().any(Material::is_coloured)
             || self.emitter_colours.iter().any(has_colour)
@@ -85,7 +85,7 @@ impl Scene {
     #[inline]
     pub fn emitter_colour(&self, emitter: usize) -> [f64; 3] {
         // No index that could fail, so that a walk which carries no colour does not even look.
-        self.emitter_colours.get(emitter).copied().unwrap_or(WHITE)
+        self.emitter_colours.get(emitter).copied().unwrap_or_default().channels()
     }
 
     /// The side state of photons that leave an emitter.

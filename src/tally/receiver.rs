@@ -5,10 +5,8 @@
 //! mesh has a cell a face.
 
 use crate::geometry::{Geometry, Hit};
-use crate::scene::receiver::{Cells, Receiver};
-use crate::scene::receiver::{ReceiverEvents, ReceiverSide};
+use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
 use crate::surface::Throughput;
-use crate::transport::weighted::Weighing;
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
@@ -127,17 +125,15 @@ pub struct FixedPointSink<'r, 's> {
     amount: u64,
 }
 
-impl<T: Throughput> Weighing<T> for FixedPointSink<'_, '_> {
-    #[inline]
-    fn weigh(&mut self, weight: f64) {
-        self.amount = (weight * self.units_per_photon + 0.5) as u64;
-    }
-}
-
 impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
         all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add_amount(cell, self.amount));
+    }
+
+    #[inline]
+    fn start(&mut self, weight: f64) {
+        self.amount = (weight * self.units_per_photon + 0.5) as u64;
     }
 }

@@ -248,7 +248,7 @@ fn the_ledger_closes_in_every_scene() {
             // The accounts that errors are computed from are the ledger's own numbers.
             let accounts: Vec<u64> =
                 ledger.absorbed.iter().copied().chain([ledger.escaped, ledger.killed]).collect();
-            assert_eq!(outcome.accounts.sum, accounts);
+            assert_eq!(outcome.accounts().sum, accounts);
         }
     }
 }
@@ -266,7 +266,7 @@ fn a_photon_lost_on_purpose_is_seen() {
         let mut ledger = Ledger::new(1, scene.geometry.surfaces().len());
         for index in 0..n {
             let mut coordinates = Coordinates::new(&points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
             ledger.begin(emitter);
             let mut exceptions = Exceptions::default();
             let start = scene.start(emitter);

@@ -14,7 +14,7 @@ use glam::DVec3;
 fn lamp_over_floor() -> Scene {
     let corner = DVec3::new(-1e6, -1e6, 0.0);
     let floor = Rectangle::new(corner, DVec3::X * 2e6, DVec3::Y * 2e6).unwrap();
-    let lamp = Emitter::Isotropic(Isotropic { position: DVec3::Z, flux_lm: 1000.0 });
+    let lamp = Emitter::Isotropic(Isotropic::new(DVec3::Z, 1000.0).unwrap());
     let mut scene = SceneBuilder::new();
     scene.surface("floor", floor.into(), Material::Absorber).emitter("lamp", lamp);
     scene.build().unwrap()
@@ -54,7 +54,7 @@ fn an_interrupt_in_a_later_replicate_leaves_the_finished_ones() {
     let outcome = interrupted_after((2 << 18) + 1, &settings).unwrap();
     assert_eq!((outcome.stopped_by, outcome.replicates), (StoppedBy::Interrupt, 2));
     assert_eq!((outcome.photons, outcome.ledger.total_emitted()), (2 << 18, 2 << 18));
-    assert_eq!(outcome.accounts.sum[0], outcome.ledger.absorbed[0]);
+    assert_eq!(outcome.accounts().sum[0], outcome.ledger.absorbed[0]);
 }
 
 #[test]

@@ -6,6 +6,7 @@
 use std::path::{Path as File, PathBuf};
 
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
 use caustix::scene::receiver::Cells;
 use caustix::sequence::Sequence;
@@ -55,7 +56,7 @@ impl Sink for Record<'_> {
 
 fn path(scene: &Scene, points: &OwenPoints, index: u64) -> Path {
     let mut coordinates = Coordinates::new(points, index, true);
-    let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+    let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
     let mut steps = Vec::new();
     let mut exceptions = Exceptions::default();
     let end = walk(

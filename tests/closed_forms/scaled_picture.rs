@@ -50,7 +50,7 @@ fn powers_of_two_change_no_bit_of_a_picture() {
             assert!(film.iter().any(|b| *b != 0) && summary.photons_kept > 100, "{at}: {summary:?}");
             for s in [1024.0, 1.0 / 1024.0] {
                 let (other_outcome, other_film, other) = seen(&scene, s);
-                assert!(outcome.cells == other_outcome.cells, "{at} x {s}");
+                assert!(outcome.cells() == other_outcome.cells(), "{at} x {s}");
                 assert_eq!(outcome.ledger, other_outcome.ledger, "{at} x {s}");
                 assert_eq!(
                     (summary.photons_kept, summary.cost),

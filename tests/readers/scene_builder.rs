@@ -13,7 +13,7 @@ fn plate(z: f64) -> Shape {
 }
 
 fn lamp(position: DVec3) -> Emitter {
-    Emitter::Isotropic(Isotropic { position, flux_lm: 100.0 })
+    Emitter::Isotropic(Isotropic::new(position, 100.0).unwrap())
 }
 
 fn receiver(name: &str, surface: &str) -> ReceiverSpec {

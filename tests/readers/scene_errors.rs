@@ -1,6 +1,7 @@
 //! Every rule of the scene format but those of surfaces and receivers, broken once: place, kind, found, required and hint of the
 //! message.
 
+use caustix::emitter::Emits;
 use caustix::error::Kind;
 use caustix::scene::receiver::Cells;
 
@@ -176,7 +177,7 @@ fn numbers() {
     // Integers, hexadecimals and separators are numbers too.
     let scene = read(&isotropic("[1, 0x10, -1_0.5e0]", "1_000")).unwrap();
     let scene = scene.build().unwrap();
-    assert_eq!(scene.emitters.as_slice()[0].centre().to_array(), [1.0, 16.0, -10.5]);
+    assert_eq!(scene.emitters.as_slice()[0].position().to_array(), [1.0, 16.0, -10.5]);
     assert_eq!(scene.emitters.flux_lm(), 1000.0);
     // A column counts characters, not bytes.
     let wide =

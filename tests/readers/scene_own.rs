@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use caustix::emitter::collimated::CrossSection;
-use caustix::emitter::{Emitter, Photometric};
+use caustix::emitter::{AimFrame, Emits, Emitter, Photometric};
 use caustix::error::Kind;
 use caustix::files::bytes::Base;
 use caustix::files::lm63;
@@ -45,23 +44,24 @@ fn meets(scene: &Scene, name: &str, origin: DVec3, direction: DVec3) -> (f64, f6
     (p.dot(u) / u.length_squared(), p.dot(v) / v.length_squared(), direction.dot(n) < 0.0)
 }
 
-/// Where a photometric lamp hangs and where its scene says that it aims.
+/// A vector of a scene's text.
+fn vector(value: &toml::Value) -> DVec3 {
+    let number = |i: usize| value[i].as_float().or(value[i].as_integer().map(|n| n as f64)).unwrap();
+    DVec3::new(number(0), number(1), number(2))
+}
+
+/// Where the first emitter is and where its scene says that it aims.
 fn lamp(scene: &Scene) -> (DVec3, DVec3) {
     let text: toml::Table = scene.identity.text.parse().unwrap();
-    let aim = text["emitter"][0].get("aim").and_then(toml::Value::as_array);
-    let aim = aim.map_or(DVec3::NEG_Z, |aim| {
-        DVec3::from_array(
-            [0, 1, 2].map(|i| aim[i].as_float().or(aim[i].as_integer().map(|n| n as f64)).unwrap()),
-        )
-    });
-    let Emitter::Photometric(lamp) = &scene.emitters.as_slice()[0] else { panic!("a photometric lamp") };
-    (lamp.position(), aim.normalize())
+    let aim = text["emitter"][0].get("aim").map_or(DVec3::NEG_Z, vector);
+    (scene.emitters.as_slice()[0].position(), aim.normalize())
 }
 
 /// That a lamp is that of a file of this project, turned this way.
 fn is_turned(lamp: &Photometric, file: &str, aim: DVec3, up: DVec3) {
     let photometry = lm63::read(project().join("ies").join(file)).unwrap();
-    let expected = Photometric::new(&photometry, lamp.position(), aim, up, None).unwrap();
+    let expected =
+        Photometric::new(&photometry, lamp.position(), AimFrame::new(aim, Some(up)).unwrap(), None).unwrap();
     assert_eq!(lamp.flux_lm(), expected.flux_lm());
     for d in [DVec3::NEG_Z, DVec3::NEG_Y, DVec3::new(0.1, 0.2, -1.0), DVec3::new(-0.2, -1.0, 0.3)] {
         assert_eq!(lamp.intensity_cd(d.normalize()), expected.intensity_cd(d.normalize()), "{d}");
@@ -194,16 +194,19 @@ fn defaults_are_as_documented() {
     let scene = file.build().unwrap();
     assert_eq!(scene.emitter_names, ["emitter 1", "emitter 2", "emitter 3"]);
     assert_eq!(scene.identity.files.len(), 1, "a file named twice is read once");
-    let [Emitter::Photometric(first), Emitter::Photometric(second), Emitter::Collimated(beam)] =
+    let [Emitter::Photometric(first), Emitter::Photometric(second), beam @ Emitter::Beam(_)] =
         scene.emitters.as_slice()
     else {
         panic!("two lamps and a beam")
     };
     is_turned(first, "spot.ies", DVec3::NEG_Z, DVec3::Y);
     is_turned(second, "spot.ies", DVec3::NEG_Y, DVec3::X);
-    assert!((beam.direction - DVec3::new(0.5f64.sqrt(), 0.5f64.sqrt(), 0.0)).length() < 1e-15);
-    let CrossSection::Rectangle(x, y) = beam.section else { panic!("a rectangle") };
-    assert!((y - DVec3::Z * 2.0).length() < 1e-15 && (x.length() - 1.5).abs() < 1e-15);
+    // 3 m along aim x up, 4 m along up: the corners, in order around.
+    let outline = beam.outline();
+    let [a, b, c] = [outline[0], outline[1], outline[2]];
+    let (width, height) = if (b - a).z.abs() < 1e-15 { (b - a, c - b) } else { (c - b, b - a) };
+    assert!((height.abs() - DVec3::Z * 4.0).length() < 1e-15 && (width.length() - 3.0).abs() < 1e-15);
+    assert!(width.dot(DVec3::new(1.0, 1.0, 0.0)).abs() < 1e-15);
     let mirror = Mirror::new(Reflectance::new(1.0).unwrap());
     assert!(matches!(scene.materials()[0], Material::Mirror(m) if m == mirror));
     let Shape::Sphere(ball) = shape(&scene, "ball") else { panic!("a sphere") };
@@ -304,7 +307,7 @@ fn reflector_lamp_is_in_the_focus_and_the_beam_falls_on_the_wall() {
     let Shape::Paraboloid(mirror) = shape(&scene, "mirror") else { panic!("a paraboloid") };
     let (vertex, axis, focal_length, radius) =
         (mirror.vertex(), mirror.axis(), mirror.focal_length(), mirror.radius());
-    assert_eq!(mirror.focus(), scene.emitters.as_slice()[0].centre());
+    assert_eq!(mirror.focus(), scene.emitters.as_slice()[0].position());
     for rim in [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
         let start = vertex + rim * radius + axis * (radius * radius / (4.0 * focal_length));
         let (u, v, front) = meets(&scene, "wall", start, axis);
@@ -340,12 +343,16 @@ fn prism_is_closed_and_outward() {
 fn prism_turns_the_beam_onto_the_screen() {
     let scene = scene("prism.toml");
     let faces = prism_faces(&scene);
-    let Emitter::Collimated(beam) = &scene.emitters.as_slice()[0] else { panic!("a beam") };
-    let CrossSection::Disc(across, up) = beam.section else { panic!("a disc") };
+    let beam = &scene.emitters.as_slice()[0];
+    let text: toml::Table = scene.identity.text.parse().unwrap();
+    let aim = vector(&text["emitter"][0]["aim"]).normalize();
+    let radius = text["emitter"][0]["radius"].as_float().unwrap();
+    let across = aim.cross(DVec3::Y).normalize() * radius;
+    let up = across.cross(aim);
     for (i, (x, y)) in [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].into_iter().enumerate()
     {
-        let mut origin = beam.centre + across * x + up * y;
-        let mut direction = beam.direction;
+        let mut origin = beam.position() + across * x + up * y;
+        let mut direction = aim;
         for eta in [1.0 / 1.5, 1.5] {
             let (t, normal) = nearest(&faces, origin, direction).expect("the beam meets the prism");
             origin += direction * t;
@@ -359,7 +366,7 @@ fn prism_turns_the_beam_onto_the_screen() {
         assert!((0.2..0.8).contains(&u) && (0.2..0.8).contains(&v) && front, "{u} {v}");
         if i == 0 {
             // Least deviation: 2 asin(n sin 30 deg) - 60 deg.
-            let deviation = beam.direction.dot(direction).acos().to_degrees();
+            let deviation = aim.dot(direction).acos().to_degrees();
             let least = 2.0 * 0.75f64.asin().to_degrees() - 60.0;
             assert!((deviation - least).abs() < 1e-4, "{deviation} {least}");
         }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
+use caustix::error::Diagnostic;
 use caustix::files::bytes::Base;
 use caustix::files::scene_toml::parse;
 use caustix::run::{Algorithm, Outcome, Plan, Settings, trace};
@@ -13,8 +14,12 @@ use super::data::project;
 
 /// A scene from its text; paths are relative to `scenes/`.
 pub fn scene(text: &str) -> Scene {
-    let file = parse(text, "test.toml", Base::Directory(project().join("scenes")));
-    file.and_then(|file| file.build()).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+    try_scene(text).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+}
+
+/// The same for a text that may be refused.
+pub fn try_scene(text: &str) -> Result<Scene, Vec<Diagnostic>> {
+    parse(text, "test.toml", Base::Directory(project().join("scenes")))?.build()
 }
 
 /// Every scene file of the project, by name.

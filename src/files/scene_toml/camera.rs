@@ -2,12 +2,11 @@
 
 use glam::DVec3;
 
-use super::emitter::orthogonal_part;
 use super::table::{DIRECTION, Table};
 use crate::error::Kind;
 use crate::error::invalid::Interval;
 use crate::geometry::{COORDINATE, LENGTH};
-use crate::math::frame::unit;
+use crate::math::frame::{orthogonal_part, unit};
 use crate::scene::camera::{
     Bandwidth, Camera, CameraSpec, Exposure, FOV, Filter, Kernel, LENS, LUMINANCE, MOST_NEAREST, MOST_PIXELS,
     MOST_SAMPLES, Method, NEAREST_REQUIRED, PIXELS_REQUIRED, WHITE,

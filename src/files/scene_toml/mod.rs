@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use crate::emitter::Emitter;
+use crate::emitter::{Colour, Emitter};
 use crate::error::{Diagnostic, Kind, Place};
 use crate::files::bytes::{Base, Files, read_capped};
 use crate::geometry::Shape;
@@ -72,8 +72,7 @@ pub struct SceneFile {
 
 struct EmitterPart {
     name: String,
-    /// Linear sRGB of luminance 1.
-    colour: [f64; 3],
+    colour: Colour,
     make: Make<Emitter>,
     place: Place,
 }

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::emitter::Emitter;
+use crate::emitter::{Emits, Emitter};
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::picture::camera::pinhole::EyeRay;
 use crate::picture::camera::view::View;
@@ -196,7 +196,7 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
     sum
 }
 
-/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Panels stand in nobody's way.
+/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Area lights stand in nobody's way.
 fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, chooser: &mut R) -> [f64; 3] {
     let material = scene.material(hit.surface);
     let from = |side: Side| {
