@@ -3,8 +3,8 @@
 //!
 //! The pipeline, in the order of the modules; each uses only those before it:
 //!
-//! 1. [`photometry`] reads a luminaire's file, [`scattering`] holds a surface's table; [`scene::file`] reads a scene, and [`scene::build`] makes a [`scene::Scene`] of
-//!    it: shapes ([`geometry`]), what they are made of ([`bsdf`]), [`emitter`]s, receivers. Everything is checked here, once.
+//! 1. [`photometry`] reads a luminaire's file, [`scattering`] holds a surface's table; [`read_scene`] reads a scene and
+//!    [`SceneBuilder`] makes a [`Scene`] of its parts: shapes ([`geometry`]), what they are made of ([`bsdf`]), [`emitter`]s, receivers. Everything is checked here, once.
 //! 2. [`run::Plan`] fixes how many photons are traced, in how many replicates, on which [`sequence`].
 //! 3. [`run::trace`]: point i of the sequence gives photon i its coordinates ([`sample`]); they choose its emitter, its
 //!    direction and what happens to it at every surface ([`transport`]), until it is absorbed or escapes.
@@ -18,15 +18,14 @@
 //!
 //! # Example
 //!
-//! Illuminance in the middle of the plate of the built-in scene, and the flux on all of it:
+//! Illuminance in the middle of the plate of a scene, and the flux on all of it:
 //!
 //! ```
 //! use caustix::run::{Plan, Settings, trace};
-//! use caustix::files::scene_toml;
 //! use std::sync::atomic::AtomicBool;
 //!
 //! # fn main() -> Result<(), Vec<caustix::Diagnostic>> {
-//! let scene = scene_toml::built_in()?.build()?;
+//! let scene = caustix::read_scene("scenes/wavy_glass.toml")?;
 //! let settings = Settings { photons: Some(1 << 14), ..Settings::default() };
 //! let plan = Plan::new(&settings).map_err(|e| vec![e])?;
 //! let interrupt = AtomicBool::new(false);
@@ -78,7 +77,7 @@ use rooms::*;
 pub use rooms::*;
 
 // The door. Errors and warnings:
-pub use error::{Diagnostic, Invalid, Kind, Result};
+pub use error::{Diagnostic, Invalid, Kind, Place, Result};
 // Photometric files:
 pub use files::lm63::{parse as parse_photometry, read as read_photometry};
 pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt, Web};
@@ -89,10 +88,10 @@ pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 pub use emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emits, Emitter, Isotropic, Panel, Photometric,
 };
-pub use files::scene_toml::read_scene;
+pub use files::scene_toml::{parse_scene, read_scene};
 pub use geometry::{
-    Facing, Formula, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing, Sphere,
-    Surface, Transform, Wave, box_mesh,
+    Facing, Formula, HeightImage, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing,
+    Sphere, Surface, Transform, Wave, box_mesh,
 };
 pub use scene::camera::{Camera, CameraSpec};
 pub use scene::receiver::{ReceiverEvents, ReceiverSide, ReceiverSpec};

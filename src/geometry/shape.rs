@@ -72,9 +72,6 @@ impl Shape {
     /// # Errors
     /// An exact shape under a non-uniform scale, a rectangle that the scale makes oblique, coordinates out of range.
     pub fn transformed(self, by: &Transform) -> Result<Self, Invalid> {
-        if *by == Transform::identity() {
-            return Ok(self);
-        }
         Ok(match self {
             Self::Mesh(m) => m.transformed(by)?.into(),
             Self::Rectangle(r) => r.transformed(by)?.into(),

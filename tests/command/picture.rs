@@ -243,6 +243,10 @@ fn damaged_maps_and_those_of_another_run_are_refused_by_name_and_reason() {
     ] {
         folder.refused(&format!("scene.toml --map {name}"), &["error", name, reason]);
     }
+    // Another text of the same light: a comment, a blank line, another way to write a number, another camera.
+    let same = ball(GREY, "kernel = \"flat\"").replace("0.25", "2.5e-1");
+    folder.scene("same.toml", &format!("# again\n\n{same}"));
+    folder.picture("same.toml --map photons.map", "same");
     folder.refused(
         "scene.toml --map photons.map --seed 9",
         &["traced by qmc-inverse-reuse", "seed 1", "same settings"],

@@ -38,7 +38,7 @@ fn defaults_are_those_of_the_manual() {
     assert_eq!((camera.filmic, camera.false_colour), (false, false));
     assert_eq!(camera.photon_memory_bytes, 2 << 30);
     let file = read(REQUIRED).unwrap();
-    assert!(file.warnings().is_empty(), "a camera is reason enough: {:?}", file.warnings());
+    assert!(file.warnings.is_empty(), "a camera is reason enough: {:?}", file.warnings);
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn every_rule_broken_once() {
 #[test]
 fn what_splatting_does_not_look_at_is_said() {
     let file = read(&format!("{REQUIRED}method = \"splat\"\nradius = 0.1\nkernel = \"flat\"\n")).unwrap();
-    let found: Vec<&str> = file.warnings().iter().map(Diagnostic::found).collect();
+    let found: Vec<&str> = file.warnings.iter().map(Diagnostic::found).collect();
     assert_eq!(found, ["radius with method = \"splat\"", "kernel with method = \"splat\""]);
 }
 

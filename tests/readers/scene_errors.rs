@@ -12,7 +12,7 @@ use crate::broken_scene::{
 #[test]
 fn the_scene_the_errors_are_put_into_is_good() {
     let scene = read(&format!("{LAMP}{BLACK}{PLATE}{RECEIVER}")).unwrap();
-    assert!(scene.warnings().is_empty());
+    assert!(scene.warnings.is_empty());
     assert_eq!(scene.build().unwrap().receivers[0].cells, Cells::Grid { nu: 256, nv: 256 });
 }
 
@@ -88,14 +88,14 @@ fn emitters() {
         &emitter("[[emitter]]\ntype = «\"isotropc\""),
         Kind::Unknown,
         "type = \"isotropc\"",
-        "photometric, isotropic, collimated or panel",
+        "photometric, isotropic, collimated, panel or disc",
     );
     assert_eq!(error.advice(), Some("did you mean \"isotropic\"?"));
     expect(
         &emitter("«[[emitter]]\nposition = [0, 0, 0]"),
         Kind::Missing,
         "an [[emitter]] without `type`",
-        "type = \"photometric\", \"isotropic\", \"collimated\" or \"panel\"",
+        "type = \"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"",
     );
     expect(
         &emitter("«[[emitter]]\ntype = \"isotropic\"\nflux_lm = 1"),
@@ -267,8 +267,8 @@ fn materials() {
     assert_eq!(error.advice(), Some("did you mean `reflectance`?"));
     let scene =
         read(&material("[material.black]\ntype = \"dielectric\"\nior = 1.33\nior_outside = 1.33")).unwrap();
-    assert_eq!(scene.warnings().len(), 1);
-    let warning = &scene.warnings()[0];
+    assert_eq!(scene.warnings.len(), 1);
+    let warning = &scene.warnings[0];
     assert_eq!((warning.line(), warning.column(), warning.kind()), (Some(7), Some(7), Kind::Range));
     assert_eq!(warning.found(), "ior = 1.33, the same as ior_outside");
 }

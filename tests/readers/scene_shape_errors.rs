@@ -56,14 +56,14 @@ fn receivers() {
         "no cells: a box has one value a triangle",
     );
     let scene = read(&format!("{LAMP}{BLACK}{PLATE}")).unwrap();
-    assert_eq!(scene.warnings().len(), 1);
-    assert_eq!(scene.warnings()[0].found(), "a scene without [[receiver]]");
-    assert_eq!((scene.warnings()[0].line(), scene.warnings()[0].column()), (Some(1), Some(1)));
+    assert_eq!(scene.warnings.len(), 1);
+    assert_eq!(scene.warnings[0].found(), "a scene without [[receiver]]");
+    assert_eq!((scene.warnings[0].line(), scene.warnings[0].column()), (Some(1), Some(1)));
     let scene =
         read(&format!("{LAMP}{BLACK}[material.spare]\ntype = \"mirror\"\n{PLATE}{RECEIVER}")).unwrap();
-    assert_eq!(scene.warnings().len(), 1);
-    assert_eq!(scene.warnings()[0].found(), "the material `spare`, which no surface has");
-    assert_eq!((scene.warnings()[0].line(), scene.warnings()[0].column()), (Some(7), Some(11)));
+    assert_eq!(scene.warnings.len(), 1);
+    assert_eq!(scene.warnings[0].found(), "the material `spare`, which no surface has");
+    assert_eq!((scene.warnings[0].line(), scene.warnings[0].column()), (Some(7), Some(11)));
 }
 
 #[test]

@@ -102,18 +102,21 @@ fn absorbed(outcome: &Outcome, scene: &Scene, name: &str) -> Estimate {
 
 #[test]
 fn keys_and_their_defaults() {
-    let desk = Desk::new(&[("t.scatter", even("reflection", "both", 0.5))]);
+    let desk = Desk::new(&[
+        ("t.scatter", even("reflection", "both", 0.5)),
+        ("front.scatter", even("reflection", "front", 0.5)),
+    ]);
     let text = |keys: &str| LAMP.to_owned() + &material(keys) + &surface("plate", PLATE);
     let material = |keys: &str| format!("{:?}", desk.scene(&text(keys)).materials()[0]);
     let plain = material("file = \"t.scatter\"");
     let defaults = "file = \"t.scatter\"\nside = \"both\"\nrotation_deg = 0\nreference = [3, 0, 0]\n\
                     energy = \"refuse\"\nspecular_remainder = false";
     assert_eq!(plain, material(defaults));
-    for other in
-        ["side = \"back\"", "rotation_deg = -30", "reference = [0, 0, 2]", "specular_remainder = true"]
-    {
+    for other in ["rotation_deg = -30", "reference = [0, 0, 2]", "specular_remainder = true"] {
         assert_ne!(plain, material(&format!("file = \"t.scatter\"\n{other}")), "{other}");
     }
+    let side = |side: &str| material(&format!("file = \"front.scatter\"\nside = \"{side}\""));
+    assert_ne!(side("front"), side("back"));
     let all = "file = \"t.scatter\"\nside = \"back\"\nrotation_deg = -30\nreference = [0, 0, 2]\nenergy = \"scale\"\n\
                specular_remainder = true";
     let scene = desk.scene(&text(all));

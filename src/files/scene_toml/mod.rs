@@ -41,6 +41,8 @@ const SCENE_LIMIT_BYTES: u64 = 16 << 20;
 pub struct SceneFile {
     /// What a run takes where nobody says otherwise.
     pub run: RunDefaults,
+    /// What is allowed but probably not meant, in the text alone.
+    pub warnings: Vec<Diagnostic>,
     text: String,
     loader: Loader,
     parts: Parts,
@@ -68,6 +70,14 @@ pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
 /// Those of [`read`] and [`SceneFile::build`].
 pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, Vec<Diagnostic>> {
     read(path)?.build()
+}
+
+/// The scene of a text; paths are relative to `folder`.
+///
+/// # Errors
+/// Those of [`parse`] and [`SceneFile::build`].
+pub fn parse_scene(text: &str, folder: impl Into<PathBuf>) -> Result<Scene, Vec<Diagnostic>> {
+    parse(text, "scene", Base::Directory(folder.into()))?.build()
 }
 
 /// The scene inside the program, `scenes/wavy_glass.toml`.
@@ -100,8 +110,8 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<SceneFile, Vec<Diagno
     };
     let parts = Parts::read(Table::new(&document, root.get_ref(), "a scene", Place { line: 1, column: 1 }));
     let warnings = document.finish()?;
-    let loader = Loader { name: name.to_owned(), files: Files::new(base), warnings };
-    Ok(SceneFile { run: parts.run, text: text.to_owned(), loader, parts })
+    let loader = Loader { name: name.to_owned(), files: Files::new(base), warnings: Vec::new() };
+    Ok(SceneFile { run: parts.run, warnings, text: text.to_owned(), loader, parts })
 }
 
 impl std::fmt::Debug for SceneFile {
@@ -111,17 +121,13 @@ impl std::fmt::Debug for SceneFile {
 }
 
 impl SceneFile {
-    /// What is allowed but probably not meant, in the text alone.
-    pub fn warnings(&self) -> &[Diagnostic] {
-        &self.loader.warnings
-    }
-
     /// The scene, with the files that it names.
     ///
     /// # Errors
     /// All that is wrong with it and its files, not only the first.
     pub fn build(self) -> Result<Scene, Vec<Diagnostic>> {
-        let Self { text, mut loader, parts, .. } = self;
+        let Self { warnings, text, mut loader, parts, .. } = self;
+        loader.warnings = warnings;
         let mut scene = SceneBuilder::new();
         let mut errors = Vec::new();
         // An error without a place of its own gets that of the part of the scene it is about.

@@ -8,6 +8,7 @@ use super::names::Names;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::parts::SurfacePart;
 use super::table::Table;
+use crate::error::Invalid;
 use crate::files::obj::{ObjOptions, parse_obj};
 use crate::geometry::{
     ANGLE, COORDINATE, LENGTH, Paraboloid, Rectangle, SCALE, Shape, Smoothing, Sphere, Transform, box_mesh,
@@ -40,9 +41,8 @@ pub(super) fn read(
         "heightfield" => {
             let label = name.as_ref().map_or("", |name| &name.value);
             let make = heightfield::read(&mut table, label, cells);
-            make.zip(transform).map(|(make, t)| -> Make<Shape> {
-                Box::new(move |loader| Ok(make(loader)?.transformed(&t)?))
-            })
+            make.zip(transform)
+                .map(|(make, t)| -> Make<Shape> { Box::new(move |loader| Ok(moved(make(loader)?, &t)?)) })
         }
         _ => {
             let shape = match kind {
@@ -51,13 +51,18 @@ pub(super) fn read(
                 "sphere" => read_sphere(&mut table).map(Shape::Sphere),
                 _ => read_paraboloid(&mut table).map(Shape::Paraboloid),
             };
-            let moved = shape.zip(transform).and_then(|(shape, t)| table.accept(shape.transformed(&t)));
+            let moved = shape.zip(transform).and_then(|(shape, t)| table.accept(moved(shape, &t)));
             moved.map(|shape| -> Make<Shape> { Box::new(move |_| Ok(shape)) })
         }
     };
     table.finish();
     let of_faces = ["mesh", "box", "heightfield"].contains(&kind).then_some(kind);
     Some(SurfacePart { name: name?.value, material: material?.index, shape: shape?, of_faces, place })
+}
+
+/// A shape that is not moved keeps its bits: no normal is normalised again.
+fn moved(shape: Shape, by: &Transform) -> Result<Shape, Invalid> {
+    if *by == Transform::identity() { Ok(shape) } else { shape.transformed(by) }
 }
 
 fn read_transform(table: &mut Table<'_, '_>) -> Option<Transform> {
