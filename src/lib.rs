@@ -92,7 +92,7 @@ pub use geometry::{
     Surface, Transform, Wave, box_mesh,
 };
 pub use scene::{Scene, SceneParts};
-pub use surface::{Bsdf, Dielectric, Reflectance, Tabulated};
+pub use surface::{Dielectric, Material, Reflectance, Tabulated};
 // Runs:
 pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace};
 pub use sequence::Sequence;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::emitter::{Emitter, Panel, collimated::CrossSection};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts, coincident_surfaces};
-use crate::surface::Bsdf;
+use crate::surface::Material;
 
 use crate::files::scene_toml::description::Place;
 
@@ -28,7 +28,12 @@ pub fn at_place(places: &[Place], index: usize, diagnostic: Diagnostic) -> Diagn
 /// An emitter on a surface, where no side is right; inside a closed dielectric, because there is no medium to start
 /// in; a beam whose cross-section reaches across a closed surface; a panel that a closed surface touches or cuts. (An open
 /// surface may cut a panel: there is no side that its photons could be wrong about.)
-pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf]) -> Result<Whereabouts> {
+pub fn start(
+    name: &str,
+    emitter: &Emitter,
+    geometry: &Geometry,
+    materials: &[Material],
+) -> Result<Whereabouts> {
     let centre = emitter.centre();
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
     let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
@@ -45,7 +50,7 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
     }
     let behind = geometry.all_behind(centre);
     for &surface in &behind {
-        if bsdfs[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {
+        if materials[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {
             return fail(
                 format!("emitter \"{name}\" inside the dielectric \"{}\"", label(surface)),
                 "an emitter outside closed dielectrics",

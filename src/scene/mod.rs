@@ -12,7 +12,7 @@ use crate::emitter::colour::WHITE;
 use crate::emitter::{Emitter, Emitters};
 use crate::error::{Diagnostic, Result};
 use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts};
-use crate::surface::{Bsdf, Tabulated};
+use crate::surface::{self, Material};
 
 use crate::files::scene_toml::description::Place;
 use camera::CameraSpec;
@@ -50,7 +50,7 @@ pub struct Scene {
     pub identity: Identity,
     /// What is allowed but probably not meant.
     pub warnings: Vec<Diagnostic>,
-    bsdfs: Vec<Bsdf>,
+    materials: Vec<Material>,
     starts: Vec<Whereabouts>,
     emitter_colours: Vec<[f64; 3]>,
 }
@@ -59,7 +59,7 @@ pub struct Scene {
 #[derive(Debug, Default)]
 pub struct SceneParts {
     /// Surfaces and what they are made of.
-    pub surfaces: Vec<(Surface, Bsdf)>,
+    pub surfaces: Vec<(Surface, Material)>,
     /// Emitters with their names.
     pub emitters: Vec<(String, Emitter)>,
     /// Colours of the emitters, linear sRGB of luminance 1 ([`crate::emitter::colour`]); emitters beyond the last are white.
@@ -98,7 +98,7 @@ impl Scene {
     /// All that is wrong: geometry that cannot be traced, coincident surfaces, an emitter on a surface or inside a
     /// closed dielectric, a receiver without area or on no surface, no flux.
     pub fn new(parts: SceneParts) -> std::result::Result<Self, Vec<Diagnostic>> {
-        let (surfaces, bsdfs): (Vec<_>, Vec<_>) = parts.surfaces.into_iter().unzip();
+        let (surfaces, materials): (Vec<_>, Vec<_>) = parts.surfaces.into_iter().unzip();
         let (emitter_names, emitters): (Vec<_>, Vec<_>) = parts.emitters.into_iter().unzip();
         let mut errors = check::coincidences(&surfaces, &parts.places.surfaces);
         let geometry =
@@ -115,7 +115,7 @@ impl Scene {
             .collect();
         let mut starts = Vec::with_capacity(emitters.len());
         for (i, (name, emitter)) in emitter_names.iter().zip(&emitters).enumerate() {
-            match check::start(name, emitter, &geometry, &bsdfs) {
+            match check::start(name, emitter, &geometry, &materials) {
                 Ok(start) => starts.push(start),
                 Err(e) => errors.push(check::at_place(&parts.places.emitters, i, e)),
             }
@@ -131,7 +131,7 @@ impl Scene {
                 camera: parts.camera,
                 identity: parts.identity,
                 warnings: parts.warnings,
-                bsdfs,
+                materials,
                 starts,
                 emitter_colours: parts.emitter_colours,
             }),
@@ -141,20 +141,20 @@ impl Scene {
 
     /// What a surface is made of.
     #[inline]
-    pub fn bsdf(&self, surface: SurfaceId) -> &Bsdf {
-        &self.bsdfs[surface.0 as usize]
+    pub fn material(&self, surface: SurfaceId) -> &Material {
+        &self.materials[surface.0 as usize]
     }
 
     /// What all surfaces are made of, by surface.
-    pub fn bsdfs(&self) -> &[Bsdf] {
-        &self.bsdfs
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
     }
 
     /// Whether anything in it treats channels differently: then photons carry a weight for each.
     pub fn is_coloured(&self) -> bool {
         let has_colour = |colour: &[f64; 3]| *colour != WHITE;
         let [r, g, b] = self.camera.as_ref().map_or([0.0; 3], |camera| camera.background_cd_m2);
-        self.bsdfs.iter().any(Bsdf::is_coloured)
+        self.materials.iter().any(Material::is_coloured)
             || self.emitter_colours.iter().any(has_colour)
             || r != g
             || g != b
@@ -176,15 +176,6 @@ impl Scene {
     /// Bytes held by geometry, emitters and scattering tables.
     pub fn memory_bytes(&self) -> usize {
         let emitters: usize = self.emitters.as_slice().iter().map(Emitter::memory_bytes).sum();
-        let mut tables: Vec<&Tabulated> = Vec::new();
-        for bsdf in &self.bsdfs {
-            if let Bsdf::Tabulated(table) = bsdf
-                && !tables.iter().any(|other| other.shares_table_with(table))
-            {
-                tables.push(table);
-            }
-        }
-        let tables: usize = tables.into_iter().map(Tabulated::memory_bytes).sum();
-        self.geometry.memory_bytes() + emitters + tables
+        self.geometry.memory_bytes() + emitters + surface::memory_bytes(&self.materials)
     }
 }

@@ -7,7 +7,7 @@ use caustix::error::Kind;
 use caustix::geometry::{Rectangle, Shape, Surface};
 use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use caustix::scene::{Scene, SceneParts};
-use caustix::surface::Bsdf;
+use caustix::surface::Material;
 use glam::DVec3;
 
 /// A lamp above a floor so wide that half of its light meets it, the first half of the first coordinate or the last.
@@ -17,7 +17,7 @@ fn lamp_over_floor() -> Scene {
     let surface = Surface { name: "floor".into(), shape: Shape::Rectangle(floor) };
     let lamp = Emitter::Isotropic(Isotropic { position: DVec3::Z, flux_lm: 1000.0 });
     let parts = SceneParts {
-        surfaces: vec![(surface, Bsdf::Absorber)],
+        surfaces: vec![(surface, Material::Absorber)],
         emitters: vec![("lamp".into(), lamp)],
         ..SceneParts::default()
     };

@@ -24,7 +24,7 @@ use caustix::run::{Outcome, trace};
 use caustix::scene::camera::{CameraSpec, Filter, Method};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Bsdf, Reflectance};
+use caustix::surface::{Material, Mirror, Reflectance};
 use glam::DVec3;
 
 use crate::support::judge::{SIGNIFICANCE, judge};
@@ -56,7 +56,7 @@ fn wall(inclination: f64) -> (Surface, f64) {
 }
 
 /// Light of 1 lx across the beam, which covers floor and wall.
-fn cup(inclination: f64, floor: Bsdf, camera: Option<CameraSpec>) -> Scene {
+fn cup(inclination: f64, floor: Material, camera: Option<CameraSpec>) -> Scene {
     let (wall, height) = wall(inclination);
     let (sin, cos) = inclination.sin_cos();
     let (direction, across) = (DVec3::new(sin, 0.0, -cos), DVec3::new(cos, 0.0, sin));
@@ -71,7 +71,7 @@ fn cup(inclination: f64, floor: Bsdf, camera: Option<CameraSpec>) -> Scene {
         side: ReceiverSide::Front,
         events: ReceiverEvents::Indirect,
     };
-    let mirror = Bsdf::Mirror { reflectance: Reflectance::grey(1.0) };
+    let mirror = Material::Mirror(Mirror::new(Reflectance::new(1.0).unwrap()));
     let plate = rectangle("floor", DVec3::NEG_Y, DVec3::X, DVec3::Y * 2.0);
     Scene::new(SceneParts {
         surfaces: vec![(plate, floor), (wall, mirror)],
@@ -91,7 +91,7 @@ fn cup(inclination: f64, floor: Bsdf, camera: Option<CameraSpec>) -> Scene {
 }
 
 fn traced(inclination: f64) -> Outcome {
-    let scene = cup(inclination, Bsdf::Absorber, None);
+    let scene = cup(inclination, Material::Absorber, None);
     trace(&scene, &plan(1 << 22, 16), &AtomicBool::new(false), &|_| {}).unwrap()
 }
 

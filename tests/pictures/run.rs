@@ -12,13 +12,13 @@ use caustix::scene::Identity;
 use caustix::scene::camera::{Bandwidth, CameraSpec};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Bsdf, Dielectric, Reflectance};
+use caustix::surface::{Dielectric, Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
 
 /// A glass ball above a table before a wall, under a beam and a panel: light of L S+ D and of L D D.
-fn ball_on_table(wall: Bsdf, memory_bytes: u64, with_camera: bool) -> Scene {
+fn ball_on_table(wall: Material, memory_bytes: u64, with_camera: bool) -> Scene {
     let position = DVec3::new(0.2, -1.6, 0.9);
     let camera = CameraSpec {
         photon_memory_bytes: memory_bytes,
@@ -28,7 +28,7 @@ fn ball_on_table(wall: Bsdf, memory_bytes: u64, with_camera: bool) -> Scene {
     };
     let table = rectangle("table", DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
     let back = rectangle("wall", DVec3::new(-1.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 1.5);
-    let glass = Bsdf::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     Scene::new(SceneParts {
         surfaces: vec![
             (table, grey(0.5)),
@@ -101,7 +101,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
 
 #[test]
 fn colour_takes_three_channels_and_its_luminance_is_that_of_the_weights() {
-    let red = Bsdf::Lambertian { reflectance: Reflectance::rgb([0.9, 0.1, 0.1]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.9, 0.1, 0.1]).unwrap()));
     let scene = ball_on_table(red, ROOM, true);
     let plan = plan(1 << 14, 2);
     let (_, picture) = trace_picture(&scene, &plan, true, unwatched(&AtomicBool::new(false))).unwrap();

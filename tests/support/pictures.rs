@@ -9,7 +9,7 @@ use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
 use caustix::scene::camera::CameraSpec;
 use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Bsdf, Reflectance};
+use caustix::surface::{Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 pub fn rectangle(name: &str, corner: DVec3, u: DVec3, v: DVec3) -> Surface {
@@ -20,8 +20,8 @@ pub fn sphere(name: &str, centre: DVec3, radius: f64) -> Surface {
     Surface { name: name.into(), shape: Shape::Sphere(Sphere::new(centre, radius).unwrap()) }
 }
 
-pub fn grey(part: f64) -> Bsdf {
-    Bsdf::Lambertian { reflectance: Reflectance::grey(part) }
+pub fn grey(part: f64) -> Material {
+    Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()))
 }
 
 /// A square beam of this half width.
@@ -35,7 +35,11 @@ pub fn panel(centre: DVec3, aim: DVec3, up: DVec3, size_m: [f64; 2], flux_lm: f6
     Emitter::Panel(Panel::new(centre, aim, up, size_m, flux_lm))
 }
 
-pub fn scene(surfaces: Vec<(Surface, Bsdf)>, emitters: Vec<Emitter>, camera: Option<CameraSpec>) -> Scene {
+pub fn scene(
+    surfaces: Vec<(Surface, Material)>,
+    emitters: Vec<Emitter>,
+    camera: Option<CameraSpec>,
+) -> Scene {
     let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp{i}"), e)).collect();
     Scene::new(SceneParts { surfaces, emitters, camera, ..SceneParts::default() }).unwrap()
 }

@@ -14,7 +14,7 @@ use crate::geometry::{
     Surface, Transform, Wave, box_mesh,
 };
 use crate::surface::tabulated::Options;
-use crate::surface::{Bsdf, Dielectric, Reference, Tabulated};
+use crate::surface::{Material, Reference, Tabulated};
 
 use crate::files::scene_toml::MOST_HEIGHTFIELD_CELLS;
 use crate::files::scene_toml::description::{
@@ -116,14 +116,9 @@ fn identity(description: &Description) -> Identity {
     }
 }
 
-fn material(d: &Description, kind: &MaterialKind, warnings: &mut Vec<Diagnostic>) -> Result<Bsdf> {
+fn material(d: &Description, kind: &MaterialKind, warnings: &mut Vec<Diagnostic>) -> Result<Material> {
     Ok(match kind {
-        MaterialKind::Dielectric { ior, ior_outside } => {
-            Bsdf::Dielectric(Dielectric { ior_outside: *ior_outside, ior: *ior })
-        }
-        MaterialKind::Mirror { reflectance } => Bsdf::Mirror { reflectance: *reflectance },
-        MaterialKind::Lambertian { reflectance } => Bsdf::Lambertian { reflectance: *reflectance },
-        MaterialKind::Absorber => Bsdf::Absorber,
+        MaterialKind::Plain(material) => material.clone(),
         MaterialKind::Tabulated(tabulated) => {
             let file = &tabulated.file;
             // Messages name the file by its path, or as it is written in a scene without a folder.
@@ -146,14 +141,14 @@ fn material(d: &Description, kind: &MaterialKind, warnings: &mut Vec<Diagnostic>
             };
             let (bsdf, found) = Tabulated::new(&table, &options).map_err(refused)?;
             warnings.extend(found.into_iter().map(|w| w.in_file(&name)));
-            Bsdf::Tabulated(Box::new(bsdf))
+            Material::Tabulated(Box::new(bsdf))
         }
     })
 }
 
 /// A material on a surface: a table is told which direction its azimuths are counted from there.
-fn laid_on(bsdf: &Bsdf, kind: &MaterialKind, shape: &Shape) -> Result<Bsdf> {
-    let (Bsdf::Tabulated(table), MaterialKind::Tabulated(tabulated)) = (bsdf, kind) else {
+fn laid_on(bsdf: &Material, kind: &MaterialKind, shape: &Shape) -> Result<Material> {
+    let (Material::Tabulated(table), MaterialKind::Tabulated(tabulated)) = (bsdf, kind) else {
         return Ok(bsdf.clone());
     };
     let own = || match shape {
@@ -163,7 +158,7 @@ fn laid_on(bsdf: &Bsdf, kind: &MaterialKind, shape: &Shape) -> Result<Bsdf> {
         Shape::Mesh(_) => Reference::Along(DVec3::X),
     };
     let reference = tabulated.reference.map_or_else(own, Reference::Along);
-    Ok(Bsdf::Tabulated(Box::new(table.with_reference(reference)?)))
+    Ok(Material::Tabulated(Box::new(table.with_reference(reference)?)))
 }
 
 fn shape(d: &Description, surface: &SurfaceDescription, warnings: &mut Vec<Diagnostic>) -> Result<Shape> {

@@ -10,7 +10,7 @@ use glam::DVec3;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::scene_toml::source::{BUILT_IN_NAME, BUILT_IN_TEXT, Base, Source};
 use crate::scene::camera::CameraSpec;
-use crate::surface::Reflectance;
+use crate::surface::Material;
 use crate::surface::tabulated::{Energy, Sides};
 
 /// A place in a scene file, both counted from 1; columns count characters.
@@ -43,7 +43,7 @@ pub struct Reference {
 }
 
 /// Everything a scene file says.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Description {
     /// The text and where it comes from.
     pub source: Source,
@@ -211,7 +211,7 @@ pub enum BeamSection {
 }
 
 /// A `[material.NAME]`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct MaterialDescription {
     /// NAME.
     pub name: String,
@@ -222,29 +222,18 @@ pub struct MaterialDescription {
 }
 
 /// What a material does with light.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum MaterialKind {
-    /// A smooth interface between two clear media.
-    Dielectric {
-        /// Refractive index behind the outward normal.
-        ior: f64,
-        /// Refractive index before it.
-        ior_outside: f64,
-    },
-    /// A mirror on both sides; the rest is absorbed.
-    Mirror {
-        /// Reflected part.
-        reflectance: Reflectance,
-    },
-    /// A diffuser on both sides; the rest is absorbed.
-    Lambertian {
-        /// Reflected part.
-        reflectance: Reflectance,
-    },
-    /// Absorbs everything.
-    Absorber,
+    /// What the scene file says is all of it.
+    Plain(Material),
     /// Scatters as a table says.
     Tabulated(TabulatedDescription),
+}
+
+impl From<Material> for MaterialKind {
+    fn from(material: Material) -> Self {
+        Self::Plain(material)
+    }
 }
 
 /// A scattering table on a surface.

@@ -1,14 +1,18 @@
 //! `[material.NAME]`: dielectric, mirror, lambertian, absorber, tabulated.
 
-use crate::error::Kind;
+use crate::error::{Invalid, Kind};
 use crate::files::scene_toml::description::{MaterialDescription, MaterialKind, TabulatedDescription};
 use crate::files::scene_toml::toml_table::{Interval, Table};
 use crate::files::scene_toml::{ANGLE, direction};
-use crate::surface::Reflectance;
 use crate::surface::tabulated::{Energy, Sides};
+use crate::surface::{Dielectric, Lambertian, Material, Mirror, Reflectance, dielectric, reflectance};
 
-const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
-const REFLECTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a reflectance from 0 to 1" };
+const IOR: Interval = interval(dielectric::RANGE, dielectric::REQUIRED);
+const REFLECTANCE: Interval = interval(reflectance::RANGE, reflectance::REQUIRED);
+
+const fn interval([low, high]: [f64; 2], words: &'static str) -> Interval {
+    Interval { low, high, words }
+}
 
 #[derive(Clone, Copy)]
 enum Type {
@@ -43,18 +47,13 @@ pub(crate) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDes
         Type::Dielectric => read_dielectric(&mut table),
         Type::Mirror => {
             table.call("a mirror");
-            let reflectance = read_reflectance(&mut table);
-            Some(MaterialKind::Mirror { reflectance: reflectance.unwrap_or(Reflectance::grey(1.0)) })
+            let reflectance = parts(&mut table, "reflectance", &REFLECTANCE).unwrap_or([1.0; 3]);
+            guarded(&table, Reflectance::rgb(reflectance)).map(|r| Material::Mirror(Mirror::new(r)).into())
         }
-        Type::Lambertian => {
-            table.call("a lambertian material");
-            let reflectance = read_reflectance(&mut table);
-            let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
-            reflectance.map(|reflectance| MaterialKind::Lambertian { reflectance })
-        }
+        Type::Lambertian => read_lambertian(&mut table),
         Type::Absorber => {
             table.call("an absorber");
-            Some(MaterialKind::Absorber)
+            Some(Material::Absorber.into())
         }
         Type::Tabulated => read_tabulated(&mut table),
     };
@@ -63,8 +62,21 @@ pub(crate) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDes
 }
 
 /// A number, or `[r, g, b]`.
-fn read_reflectance(table: &mut Table<'_, '_>) -> Option<Reflectance> {
-    table.number_or_vector("reflectance", &REFLECTANCE).map(|rgb| Reflectance::rgb(rgb.to_array()))
+fn parts(table: &mut Table<'_, '_>, key: &'static str, range: &Interval) -> Option<[f64; 3]> {
+    table.number_or_vector(key, range).map(|rgb| rgb.to_array())
+}
+
+/// What a constructor made; what it refuses is an error at the place of that key.
+fn guarded<T>(table: &Table<'_, '_>, made: Result<T, Invalid>) -> Option<T> {
+    made.map_err(|e| table.error(e.what(), Kind::Range, e.required())).ok()
+}
+
+fn read_lambertian(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+    table.call("a lambertian material");
+    let reflectance = parts(table, "reflectance", &REFLECTANCE);
+    let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+    let reflectance = guarded(table, Reflectance::rgb(reflectance?))?;
+    Some(Material::Lambertian(Lambertian::new(reflectance)).into())
 }
 
 fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
@@ -77,7 +89,7 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
         let found = format!("ior = {ior}, the same as ior_outside");
         table.document().warn_at(place, Kind::Range, found, "two media that differ: light passes unchanged");
     }
-    Some(MaterialKind::Dielectric { ior, ior_outside })
+    guarded(table, Dielectric::new(ior, ior_outside)).map(|glass| Material::Dielectric(glass).into())
 }
 
 fn read_tabulated(table: &mut Table<'_, '_>) -> Option<MaterialKind> {

@@ -20,8 +20,7 @@ use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Filter};
-use crate::surface::value::Leg;
-use crate::surface::{Bsdf, luminance, luminance_of};
+use crate::surface::{Leg, Material, luminance, luminance_of};
 
 use crate::picture::camera::film;
 use crate::picture::camera::film::Film;
@@ -165,7 +164,7 @@ impl<'s, const C: usize> Splat<'s, C> {
         if left > right || top > bottom {
             return false;
         }
-        let f = value::<C>(self.scene.bsdf(hit.surface), hit, -arrival.direction, wo);
+        let f = value::<C>(self.scene.material(hit.surface), hit, -arrival.direction, wo);
         if f.iter().all(|f| *f <= 0.0) || self.is_hidden(hit, arrival.whereabouts, wo, distance) {
             return false;
         }
@@ -230,8 +229,8 @@ fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
     let Some(seen) = view.pinhole.project(hit.position) else { return 0.0 };
     let to_eye = -seen.direction;
     let towards = if to_eye.dot(hit.normal) > 0.0 { hit.normal } else { -hit.normal };
-    let bsdf = view.scene.bsdf(hit.surface);
-    let f = bsdf.value_between(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
+    let bsdf = view.scene.material(hit.surface);
+    let f = bsdf.eval(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
     let h = filter::density(view.spec.filter, [0.0; 2]);
     let per_area = to_eye.dot(hit.normal).abs() / (seen.distance_m * seen.distance_m);
     luminance(f) * per_area * seen.pixels_per_sr * h
@@ -239,9 +238,9 @@ fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
 
 /// f(wi, wo) by channel, 1/sr; one channel sees white light's luminance.
 #[inline]
-fn value<const C: usize>(bsdf: &Bsdf, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; C] {
+fn value<const C: usize>(bsdf: &Material, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; C] {
     let arrived = Leg { direction: wi, front: hit.front };
-    let rgb = bsdf.value_between(hit.normal, arrived, Leg::new(wo, hit.normal));
+    let rgb = bsdf.eval(hit.normal, arrived, Leg::new(wo, hit.normal));
     if C == 1 { [luminance(rgb); C] } else { std::array::from_fn(|c| rgb[c]) }
 }
 
