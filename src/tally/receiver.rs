@@ -6,7 +6,6 @@
 
 use crate::geometry::{Geometry, Hit};
 use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
-use crate::surface::Throughput;
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
