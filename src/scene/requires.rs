@@ -20,7 +20,7 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let shape = |test: fn(&Shape) -> bool| surfaces.iter().any(|s| test(&s.shape));
     let cells = |test: fn(&Cells) -> bool| scene.receivers.iter().any(|r| test(&r.cells));
     let specular = bsdf(|b| matches!(b, Bsdf::Dielectric(_) | Bsdf::Mirror { .. }));
-    let mut emission: Vec<(u8, &str)> = emitters.iter().map(Emits::requires).collect();
+    let mut emission: Vec<(u8, &str)> = emitters.iter().map(|e| e.kind().requires).collect();
     emission.sort_unstable();
     emission.dedup();
     let others = [
