@@ -4,11 +4,15 @@
 //! luminance is 1 whatever it is: a red lamp of 100 lm and a blue one of 100 lm give the same lux.
 
 use crate::error::Invalid;
-use crate::error::invalid::number;
+use crate::error::invalid::Interval;
 use crate::surface::luminance;
 
-/// Lowest and highest temperature of a black body, K: the range that Krystek states.
-pub const CCT_RANGE_K: [f64; 2] = [1000.0, 15_000.0];
+/// Temperatures of a black body, K: the range that Krystek states.
+pub const CCT_K: Interval =
+    Interval { low: 1000.0, high: 15_000.0, words: "a colour temperature from 1000 to 15000 K" };
+
+/// Parts of light, in any one unit.
+pub const CHANNEL: Interval = Interval { low: 0.0, high: 1e9, words: "a part of light from 0 to 1e9" };
 
 /// CIE 1931 XYZ to linear sRGB: the inverse of the matrix of BT.709's primaries and D65, (0.3127, 0.3290).
 const RGB_OF_XYZ: [[f64; 3]; 3] = [
@@ -37,7 +41,7 @@ impl Colour {
     /// A part that is negative, beyond 1e9 or not a number; black.
     pub fn new(rgb: [f64; 3]) -> Result<Self, Invalid> {
         for part in rgb {
-            number("colour", part, [0.0, 1e9], "a part of light from 0 to 1e9")?;
+            CHANNEL.check("colour", part)?;
         }
         let largest = rgb.into_iter().fold(0.0, f64::max);
         if largest == 0.0 {
@@ -59,9 +63,9 @@ impl Colour {
     /// sRGB colour is as red as) and is 0 instead.
     ///
     /// # Errors
-    /// A temperature outside [`CCT_RANGE_K`].
+    /// A temperature outside [`CCT_K`].
     pub fn black_body(cct_k: f64) -> Result<(Self, bool), Invalid> {
-        number("cct_k", cct_k, CCT_RANGE_K, "a colour temperature from 1000 to 15000 K")?;
+        CCT_K.check("cct_k", cct_k)?;
         let [x, y] = planckian_xy(cct_k);
         let xyz = [x / y, 1.0, (1.0 - x - y) / y];
         let rgb = RGB_OF_XYZ.map(|row| row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2]);
@@ -76,7 +80,7 @@ impl Colour {
     }
 }
 
-/// Chromaticity CIE 1931 (x, y) of a black body of this temperature, [`CCT_RANGE_K`]: Krystek, "An algorithm to calculate
+/// Chromaticity CIE 1931 (x, y) of a black body of this temperature, [`CCT_K`]: Krystek, "An algorithm to calculate
 /// correlated colour temperature", Color Research and Application 10(1), 1985, 38-40. It stays within 0.0005 of the integral of
 /// Planck's law over the CIE's table.
 fn planckian_xy(cct_k: f64) -> [f64; 2] {

@@ -3,8 +3,12 @@
 use glam::{DMat3, DVec3};
 
 use crate::error::Invalid;
-use crate::error::invalid::{number, vector};
+use crate::error::invalid::Interval;
+use crate::geometry::{COORDINATE, LENGTH};
 use crate::math::frame::{orthogonal_part, unit};
+
+/// Fluxes of emitters, lm.
+pub const FLUX: Interval = Interval { low: 1e-9, high: 1e12, words: "a flux from 1e-9 to 1e12 lm" };
 
 /// Orthogonal unit vectors `aim` and `up`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,17 +53,17 @@ impl AimFrame {
 
 /// A luminous flux, lm.
 pub(super) fn flux(flux_lm: f64) -> Result<f64, Invalid> {
-    number("flux_lm", flux_lm, [1e-9, 1e12], "a flux from 1e-9 to 1e12 lm")
+    FLUX.check("flux_lm", flux_lm)
 }
 
 /// A place, m.
 pub(super) fn place(position: DVec3) -> Result<DVec3, Invalid> {
-    vector("position", position, 1e9, "a number of metres from -1e9 to 1e9")
+    COORDINATE.vector("position", position)
 }
 
 /// A length, m.
 pub(super) fn length(what: &'static str, metres: f64) -> Result<f64, Invalid> {
-    number(what, metres, [1e-9, 1e9], "a length from 1e-9 to 1e9 m")
+    LENGTH.check(what, metres)
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub use beam::{Beam, BeamSection};
 pub use choice::Emitters;
 pub use colour::Colour;
 pub use disc::Disc;
-pub use frame::AimFrame;
+pub use frame::{AimFrame, FLUX};
 pub use isotropic::Isotropic;
 pub use panel::Panel;
 pub use photometric::Photometric;

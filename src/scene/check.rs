@@ -1,25 +1,11 @@
-//! Checks that need the whole scene: coincident surfaces, emitters where none may be.
+//! Emitters where none may be: on a surface, inside glass, across a closed surface.
 
 use crate::emitter::{Emits, Emitter};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::geometry::{Geometry, Surface, SurfaceId, Whereabouts, coincident_surfaces};
-use crate::surface::Bsdf;
+use crate::geometry::{Geometry, SurfaceId, Whereabouts};
+use crate::surface::Material;
 
 use super::figure::{Contact, Figure};
-use crate::files::scene_toml::description::Place;
-
-/// Every pair of surfaces that lie in the same place: neither would be first. Each points to the second of the two.
-pub fn coincidences(surfaces: &[Surface], places: &[Place]) -> Vec<Diagnostic> {
-    coincident_surfaces(surfaces).into_iter().map(|([_, second], e)| at_place(places, second, e)).collect()
-}
-
-/// The diagnostic at the place of part number `index`, if the scene comes from a file.
-pub fn at_place(places: &[Place], index: usize, diagnostic: Diagnostic) -> Diagnostic {
-    match places.get(index) {
-        Some(place) => diagnostic.at(place.line, place.column),
-        None => diagnostic,
-    }
-}
 
 /// The side state of photons of an emitter.
 ///
@@ -27,7 +13,12 @@ pub fn at_place(places: &[Place], index: usize, diagnostic: Diagnostic) -> Diagn
 /// An emitter on a surface, where no side is right; inside a closed dielectric, because there is no medium to start
 /// in; one whose photons start on both sides of a closed surface, because that touches or cuts the figure that they start in.
 /// (An open surface may cut it: there is no side that its photons could be wrong about.)
-pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf]) -> Result<Whereabouts> {
+pub fn start(
+    name: &str,
+    emitter: &Emitter,
+    geometry: &Geometry,
+    materials: &[Material],
+) -> Result<Whereabouts> {
     let centre = emitter.position();
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
     let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
@@ -41,7 +32,7 @@ pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry, bsdfs: &[Bsdf])
     }
     let behind = geometry.all_behind(centre);
     for &surface in &behind {
-        if bsdfs[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {
+        if materials[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {
             return fail(
                 format!("emitter \"{name}\" inside the dielectric \"{}\"", label(surface)),
                 "an emitter outside closed dielectrics",

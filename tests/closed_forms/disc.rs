@@ -6,13 +6,12 @@
 
 use std::f64::consts::PI;
 
-use caustix::files::scene_toml::build::build;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
 
 use crate::support::judge::{assert_cells, assert_total};
 use crate::support::quadrature::cell_means;
-use crate::support::scenes::{describe, run, scene};
+use crate::support::scenes::{run, scene, try_scene};
 
 const RADIUS: f64 = 0.6;
 const DISTANCE: f64 = 0.8;
@@ -77,13 +76,13 @@ fn a_small_receiver_on_the_axis_and_one_beside_it() {
 fn nothing_shines_backwards() {
     let above = plate(0.0, 1.0, 4).replace("0.0]\nedge_u", "2.0]\nedge_u") + "side = \"both\"\n";
     let outcome = run(&scene(&(DISC.to_string() + &above)), Sequence::SobolOwen, 1 << 12, 4, 4);
-    assert_eq!(outcome.totals.sum[0], 0);
+    assert_eq!(outcome.totals().sum[0], 0);
     assert_eq!(outcome.ledger.escaped, outcome.photons);
 }
 
 /// What is found wrong with an emitter and a surface, in one error that points to the emitter; empty if nothing is.
 fn found(emitter: &str, surface: &str) -> String {
-    let errors = match build(&describe(&(emitter.to_string() + surface))) {
+    let errors = match try_scene(&(emitter.to_string() + surface)) {
         Ok(_) => return String::new(),
         Err(errors) => errors,
     };

@@ -5,10 +5,9 @@
 //! fail.
 
 use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
+use caustix::files::bytes::Base;
 use caustix::files::lm63;
 use caustix::files::scene_toml;
-use caustix::files::scene_toml::build;
-use caustix::files::scene_toml::source::Base;
 use caustix::photometry::{PhotometricType, Photometry};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
@@ -241,7 +240,7 @@ fn scene(name: &str, frame: &str) -> Scene {
          [[receiver]]\nsurface = \"plate\"\ncells = [4, 4]\n"
     );
     let base = Base::Directory(project().join("ies"));
-    build::build(&scene_toml::parse(&text, "frame.toml", base).unwrap()).unwrap()
+    scene_toml::parse(&text, "frame.toml", base).unwrap().build().unwrap()
 }
 
 fn lamp(scene: &Scene) -> &Photometric {

@@ -10,11 +10,11 @@ use caustix::files::lm63;
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::{Chooser, Coordinates, Purpose};
 use caustix::sample::method::Sampling;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Points;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
-use caustix::surface::{Bsdf, Dielectric, Grey, Reflectance};
+use caustix::surface::{Dielectric, Grey, Lambertian, Material, Mirror, Reflectance};
 use caustix::transport::census::{Exceptions, LONGEST_DIMENSION};
 use caustix::transport::parallel::{How, trace_range};
 use caustix::transport::{Arrival, End, Sink, walk};
@@ -50,19 +50,22 @@ struct Watch<'s> {
 impl Sink for Watch<'_> {
     fn arrive(&mut self, arrival: &Arrival<'_>) {
         let seen = &mut self.seen;
-        let count = match self.scene.bsdf(arrival.hit.surface) {
-            Bsdf::Dielectric(Dielectric { ior, ior_outside }) => {
+        let count = match self.scene.material(arrival.hit.surface) {
+            Material::Dielectric(glass) => {
                 // Snell: n1 sin(i) >= n2 leaves no way through. The cross product gives the sine.
                 let sine = arrival.direction.cross(arrival.hit.normal).length();
-                let (n1, n2) = if arrival.hit.front { (ior_outside, ior) } else { (ior, ior_outside) };
-                if n1 * sine >= *n2 { &mut seen.total_reflections } else { &mut seen.fresnel }
+                let (outside, inside) = (glass.ior_outside(), glass.ior());
+                let (n1, n2) = if arrival.hit.front { (outside, inside) } else { (inside, outside) };
+                if n1 * sine >= n2 { &mut seen.total_reflections } else { &mut seen.fresnel }
             }
-            Bsdf::Mirror { reflectance } if reflectance.luminous() == 1.0 => &mut seen.perfect_mirror,
-            Bsdf::Mirror { .. } => &mut seen.mirror,
-            Bsdf::Lambertian { reflectance } if reflectance.luminous() == 1.0 => &mut seen.white,
-            Bsdf::Lambertian { .. } => &mut seen.lambertian,
-            Bsdf::Tabulated(_) => unreachable!("no table in these scenes"),
-            Bsdf::Absorber => &mut seen.absorber,
+            Material::Mirror(mirror) if mirror.reflectance().luminous() == 1.0 => &mut seen.perfect_mirror,
+            Material::Mirror(_) => &mut seen.mirror,
+            Material::Lambertian(wall) if wall.reflectance().luminous() == 1.0 => &mut seen.white,
+            Material::Lambertian(_) => &mut seen.lambertian,
+            Material::Tabulated(_) => {
+                unreachable!("no table in these scenes")
+            }
+            Material::Absorber => &mut seen.absorber,
         };
         *count += 1;
     }
@@ -132,10 +135,10 @@ fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, t
     let mut watch = Watch { scene, seen: Arrivals::default() };
     let end = follow(scene, emission, emitter, &mut chooser, &mut watch);
     let seen = watch.seen;
-    let absorbed_by_chance =
-        matches!(end, End::Absorbed(s) if !matches!(scene.bsdf(s), Bsdf::Absorber)) && chooser.refused_last;
-    let by_mirror =
-        matches!(end, End::Absorbed(s) if matches!(scene.bsdf(s), Bsdf::Mirror { .. })) && absorbed_by_chance;
+    let absorbed_by_chance = matches!(end, End::Absorbed(s) if !matches!(scene.material(s), Material::Absorber))
+        && chooser.refused_last;
+    let by_mirror = matches!(end, End::Absorbed(s) if matches!(scene.material(s), Material::Mirror(_)))
+        && absorbed_by_chance;
     let by_diffuse = absorbed_by_chance && !by_mirror;
 
     // What the paper counts: ideal specular and other scatterings.
@@ -234,12 +237,12 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
     })
 }
 
-fn surface(name: &str, shape: Shape, bsdf: Bsdf) -> (Surface, Bsdf) {
+fn surface(name: &str, shape: Shape, bsdf: Material) -> (Surface, Material) {
     (Surface { name: name.into(), shape }, bsdf)
 }
 
-fn glass_box(min: DVec3, max: DVec3) -> (Surface, Bsdf) {
-    let glass = Bsdf::Dielectric(Dielectric { ior: 1.5, ior_outside: 1.0 });
+fn glass_box(min: DVec3, max: DVec3) -> (Surface, Material) {
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     surface("glass", Shape::Mesh(box_mesh(min, max).unwrap()), glass)
 }
 
@@ -254,12 +257,18 @@ fn point(position: DVec3, flux_lm: f64) -> Emitter {
     Emitter::Isotropic(Isotropic::new(position, flux_lm).unwrap())
 }
 
-fn scene(surfaces: Vec<(Surface, Bsdf)>, emitters: Vec<Emitter>) -> Scene {
-    let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp {i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, ..SceneParts::default() }).unwrap()
+fn scene(surfaces: Vec<(Surface, Material)>, emitters: Vec<Emitter>) -> Scene {
+    let mut scene = SceneBuilder::new();
+    for (surface, material) in surfaces {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    for (i, emitter) in emitters.into_iter().enumerate() {
+        scene.emitter(format!("lamp {i}"), emitter);
+    }
+    scene.build().unwrap()
 }
 
-fn floor(bsdf: Bsdf) -> (Surface, Bsdf) {
+fn floor(bsdf: Material) -> (Surface, Material) {
     let plate = Rectangle::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0).unwrap();
     surface("floor", Shape::Rectangle(plate), bsdf)
 }
@@ -267,7 +276,8 @@ fn floor(bsdf: Bsdf) -> (Surface, Bsdf) {
 #[test]
 fn a_glass_slab_over_an_absorbing_floor() {
     let slab = || glass_box(DVec3::new(-1.0, -1.0, 0.5), DVec3::new(1.0, 1.0, 0.8));
-    let one = scene(vec![slab(), floor(Bsdf::Absorber)], vec![table_lamp("wavy_glass.ies", DVec3::Z * 2.0)]);
+    let one =
+        scene(vec![slab(), floor(Material::Absorber)], vec![table_lamp("wavy_glass.ies", DVec3::Z * 2.0)]);
     let [reuse, plain] = check_scene("slab, one lamp", &one, 1 << 14);
     assert!(reuse.total_reflections > 0, "the account of events that draw nothing must be put to the test");
     // A specular scene: two coordinates and at most one event coordinate, whatever the number of faces crossed.
@@ -278,14 +288,18 @@ fn a_glass_slab_over_an_absorbing_floor() {
         point(DVec3::new(0.3, 0.1, 1.5), 300.0),
         table_lamp("floodlight_b.ies", DVec3::new(-0.5, 0.2, 1.8)),
     ];
-    check_scene("slab, three lamps", &scene(vec![slab(), floor(Bsdf::Absorber)], lamps), 1 << 14);
+    check_scene("slab, three lamps", &scene(vec![slab(), floor(Material::Absorber)], lamps), 1 << 14);
 }
 
 #[test]
 fn a_diffuse_sphere_from_inside() {
     let sphere = |reflectance| {
         let shape = Shape::Sphere(Sphere::new(DVec3::ZERO, 1.0).unwrap());
-        surface("sphere", shape, Bsdf::Lambertian { reflectance: Reflectance::grey(reflectance) })
+        surface(
+            "sphere",
+            shape,
+            Material::Lambertian(Lambertian::new(Reflectance::new(reflectance).unwrap())),
+        )
     };
     let inside = DVec3::new(0.2, -0.3, 0.1);
     let simple = scene(vec![sphere(0.8)], vec![point(inside, 100.0)]);
@@ -297,7 +311,7 @@ fn a_diffuse_sphere_from_inside() {
 
     // Long paths through glass spend more than the 40 bits of one coordinate: the 24-bit rule is at work.
     let ball = Shape::Sphere(Sphere::new(DVec3::new(0.0, 0.0, -0.4), 0.4).unwrap());
-    let glass = Bsdf::Dielectric(Dielectric { ior: 1.5, ior_outside: 1.0 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let lamp = table_lamp("spot.ies", DVec3::new(0.0, 0.1, 0.5));
     let long = scene(vec![sphere(0.99), surface("ball", ball, glass)], vec![lamp, point(inside, 500.0)]);
     let [reuse, _] = check_scene("white sphere, glass ball", &long, 1 << 11);
@@ -308,7 +322,7 @@ fn a_diffuse_sphere_from_inside() {
 fn a_mirror_box_with_a_block_of_glass() {
     let mirror = |name: &str, half: f64, reflectance| {
         let shape = Shape::Mesh(box_mesh(DVec3::splat(-half), DVec3::splat(half)).unwrap());
-        surface(name, shape, Bsdf::Mirror { reflectance: Reflectance::grey(reflectance) })
+        surface(name, shape, Material::Mirror(Mirror::new(Reflectance::new(reflectance).unwrap())))
     };
     let lamp = || point(DVec3::new(0.31, -0.27, 0.63), 100.0);
     check_scene("mirror box", &scene(vec![mirror("box", 1.0, 0.9)], vec![lamp()]), 1 << 13);
@@ -322,7 +336,7 @@ fn a_mirror_box_with_a_block_of_glass() {
     // Perfect mirrors and perfect white surfaces draw nothing for the event.
     let open = vec![
         mirror("block", 0.4, 1.0),
-        floor_below(Bsdf::Lambertian { reflectance: Reflectance::grey(1.0) }),
+        floor_below(Material::Lambertian(Lambertian::new(Reflectance::new(1.0).unwrap()))),
     ];
     check_scene(
         "perfect mirror, white floor",
@@ -331,7 +345,7 @@ fn a_mirror_box_with_a_block_of_glass() {
     );
 }
 
-fn floor_below(bsdf: Bsdf) -> (Surface, Bsdf) {
+fn floor_below(bsdf: Material) -> (Surface, Material) {
     let plate = Rectangle::new(DVec3::new(-3.0, -3.0, -1.0), DVec3::X * 6.0, DVec3::Y * 6.0).unwrap();
     surface("floor", Shape::Rectangle(plate), bsdf)
 }

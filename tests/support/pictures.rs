@@ -6,9 +6,9 @@ use caustix::emitter::{AimFrame, AreaLight, Beam, BeamSection, Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface};
 use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
-use caustix::scene::camera::CameraSpec;
-use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Bsdf, Reflectance};
+use caustix::scene::camera::{Camera, CameraSpec};
+use caustix::scene::{Scene, SceneBuilder};
+use caustix::surface::{Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 pub fn rectangle(name: &str, corner: DVec3, u: DVec3, v: DVec3) -> Surface {
@@ -19,8 +19,8 @@ pub fn sphere(name: &str, centre: DVec3, radius: f64) -> Surface {
     Surface { name: name.into(), shape: Shape::Sphere(Sphere::new(centre, radius).unwrap()) }
 }
 
-pub fn grey(part: f64) -> Bsdf {
-    Bsdf::Lambertian { reflectance: Reflectance::grey(part) }
+pub fn grey(part: f64) -> Material {
+    Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()))
 }
 
 /// A square beam of this half width.
@@ -35,9 +35,22 @@ pub fn panel(centre: DVec3, aim: DVec3, up: DVec3, size_m: [f64; 2], flux_lm: f6
     Emitter::Panel(AreaLight::new(centre, frame, Panel::new(size_m).unwrap(), flux_lm).unwrap())
 }
 
-pub fn scene(surfaces: Vec<(Surface, Bsdf)>, emitters: Vec<Emitter>, camera: Option<CameraSpec>) -> Scene {
-    let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp{i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, camera, ..SceneParts::default() }).unwrap()
+pub fn scene(
+    surfaces: Vec<(Surface, Material)>,
+    emitters: Vec<Emitter>,
+    camera: Option<CameraSpec>,
+) -> Scene {
+    let mut scene = SceneBuilder::new();
+    for (surface, material) in surfaces {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    for (i, emitter) in emitters.into_iter().enumerate() {
+        scene.emitter(format!("lamp{i}"), emitter);
+    }
+    if let Some(camera) = camera {
+        scene.camera(Camera::new(camera).unwrap());
+    }
+    scene.build().unwrap()
 }
 
 pub fn plan(photons: u64, replicates: u32) -> Plan {

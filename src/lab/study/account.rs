@@ -12,7 +12,7 @@ use crate::sample::method::{Rejection, Sampling};
 use crate::scene::Scene;
 use crate::sequence::Points;
 use crate::sequence::independent::IndependentPoints;
-use crate::surface::{Bsdf, Grey, Incidence, Rgb, Throughput};
+use crate::surface::{Grey, Incidence, Kind, Rgb, Throughput};
 use crate::transport::census::Exceptions;
 use crate::transport::{Arrival, End, Sink, walk};
 
@@ -128,9 +128,8 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
             End::Absorbed(surface) => {
                 // The last arrival was no scattering.
                 events.end = 2.0;
-                match scene.bsdf(surface) {
-                    Bsdf::Lambertian { .. } | Bsdf::Tabulated(_) => events.scattered -= 1.0,
-                    Bsdf::Dielectric(_) | Bsdf::Mirror { .. } | Bsdf::Absorber => {}
+                if scene.material(surface).scatters() {
+                    events.scattered -= 1.0;
                 }
             }
             End::Escaped | End::Killed => events.end = 1.0,
@@ -169,23 +168,17 @@ struct Arrivals<'s> {
 
 impl<T> Sink<T> for Arrivals<'_> {
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
-        match self.scene.bsdf(arrival.hit.surface) {
-            Bsdf::Dielectric(_) | Bsdf::Mirror { .. } => self.events.specular += 1.0,
-            Bsdf::Lambertian { .. } => self.events.scattered += 1.0,
-            Bsdf::Tabulated(table) => {
+        let material = self.scene.material(arrival.hit.surface);
+        match material.kind() {
+            Kind::Specular => self.events.specular += 1.0,
+            Kind::Scattering => {
                 self.events.scattered += 1.0;
-                let sign = if arrival.hit.front { 1.0 } else { -1.0 };
-                let at = Incidence {
-                    direction: arrival.direction,
-                    facet: arrival.hit.normal * sign,
-                    smooth: arrival.hit.shading_normal * sign,
-                    front: arrival.hit.front,
-                };
-                let (cells, whole) = table.proposals(&at);
-                self.events.table_proposals[0] += cells;
-                self.events.table_proposals[1] += whole;
+                let proposals = material.proposals(&Incidence::of(arrival.hit, arrival.direction));
+                for (sum, proposals) in self.events.table_proposals.iter_mut().zip(proposals) {
+                    *sum += proposals;
+                }
             }
-            Bsdf::Absorber => {}
+            Kind::Absorbing => {}
         }
     }
 }
