@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::disc::{circle, unit_disc};
 use super::frame::{self, AimFrame, length};
 use super::panel::SQUARE;
-use super::{DirectLight, Emission, Emits};
+use super::{DirectLight, Emission, Emits, EmitterKind};
 use crate::error::Invalid;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Coordinates, Purpose};
@@ -118,16 +118,9 @@ impl Emits for Beam {
         ring.into_iter().map(|[a, b]| self.centre + x * a + y * b).collect()
     }
 
-    fn may_touch(&self) -> bool {
-        true
-    }
-
-    fn noun(&self) -> &'static str {
-        "beam"
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        (2, "collimated emission")
+    #[inline]
+    fn kind(&self) -> EmitterKind {
+        EmitterKind { may_touch: true, ..EmitterKind::new("beam", (2, "collimated emission")) }
     }
 }
 

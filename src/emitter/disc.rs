@@ -47,6 +47,9 @@ impl Disc {
 }
 
 impl LitShape for Disc {
+    const NOUN: &'static str = "disc";
+    const REQUIRES: (u8, &'static str) = (4, "disc emission");
+
     fn etendue_m2_sr(&self) -> f64 {
         PI * PI * self.radius_m * self.radius_m
     }
@@ -96,14 +99,6 @@ impl LitShape for Disc {
         let [x, y] = if off_axis > 0.0 { foot.map(|f| -f / off_axis) } else { [1.0, 0.0] };
         let place = [foot[0] + t * (cos * x - sin * y), foot[1] + t * (cos * y + sin * x)];
         Some((place, 2.0 * widest * (to - from)))
-    }
-
-    fn noun(&self) -> &'static str {
-        "disc"
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        (4, "disc emission")
     }
 }
 

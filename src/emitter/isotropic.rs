@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{DirectLight, Emission, Emits, frame};
+use super::{DirectLight, Emission, Emits, EmitterKind, frame};
 use crate::error::Invalid;
 use crate::math::trig::sin_cos;
 use crate::sample::choose::Reusable;
@@ -61,7 +61,8 @@ impl Emits for Isotropic {
         DirectLight::from_point(self.position, point, |_| self.flux_lm / (4.0 * PI))
     }
 
-    fn requires(&self) -> (u8, &'static str) {
-        (1, "isotropic emission")
+    #[inline]
+    fn kind(&self) -> EmitterKind {
+        EmitterKind::new("point", (1, "isotropic emission"))
     }
 }

@@ -46,6 +46,9 @@ impl Panel {
 }
 
 impl LitShape for Panel {
+    const NOUN: &'static str = "panel";
+    const REQUIRES: (u8, &'static str) = (3, "panel emission");
+
     #[inline]
     fn etendue_m2_sr(&self) -> f64 {
         PI * self.size_m[0] * self.size_m[1]
@@ -80,14 +83,6 @@ impl LitShape for Panel {
             let place = self.at([x + 2.0 * offset[0] / width, y + 2.0 * offset[1] / height]);
             (place, rectangle.solid_angle_sr())
         })
-    }
-
-    fn noun(&self) -> &'static str {
-        "panel"
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        (3, "panel emission")
     }
 }
 

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::{AimFrame, DirectLight, Emission, Emits, frame};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, frame};
 use crate::error::Invalid;
 use crate::error::invalid::positive;
 use crate::math::frame::frame_from_axis;
@@ -143,7 +143,8 @@ impl Emits for Photometric {
         Some(&self.grid)
     }
 
-    fn requires(&self) -> (u8, &'static str) {
-        (0, "photometric table")
+    #[inline]
+    fn kind(&self) -> EmitterKind {
+        EmitterKind::new("point", (0, "photometric table"))
     }
 }

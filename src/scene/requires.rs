@@ -21,7 +21,7 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let materials = scene.materials();
     let specular = materials.iter().any(|m| m.kind() == Kind::Specular);
     let words: Vec<&str> = materials.iter().flat_map(Material::requires).copied().collect();
-    let mut emission: Vec<(u8, &str)> = emitters.iter().map(Emits::requires).collect();
+    let mut emission: Vec<(u8, &str)> = emitters.iter().map(|e| e.kind().requires).collect();
     emission.sort_unstable();
     emission.dedup();
     let of_emitters_and_shapes = [

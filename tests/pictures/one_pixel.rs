@@ -24,7 +24,7 @@ pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u6
         let how =
             How { reuse: true, sampling: Sampling::default(), interrupt: &interrupt, progress: &|_| {} };
         let sink = || store.sink(nobody.sink(), replicate);
-        trace_range(scene, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
+        trace_range(scene, &scene.emitters, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
     }
     let frame = store.frame();
     store.take().unwrap().map(|blocks| PhotonMap::build(blocks.concat(), frame, 1.0))

@@ -216,7 +216,7 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
             interrupt: &AtomicBool::new(false),
             progress: &|_| {},
         };
-        let census = trace_range(scene, &owen, 0..photons, Grey, how, || Ignore).census;
+        let census = trace_range(scene, &scene.emitters, &owen, 0..photons, Grey, how, || Ignore).census;
         assert_eq!(census.drawn_for.iter().sum::<u64>(), totals.drawn, "{name}");
         assert_eq!(census.dimension_histogram, histogram, "{name}");
         assert_eq!(census.dimension_max, totals.longest, "{name}");

@@ -100,7 +100,7 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
                 (Sampling::Rejection(_), Some(grid)) => {
                     own([chosen_emitter, false]) + 3.0 * grid.proposals_of_table()
                 }
-                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.coordinates()),
+                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.kind().coordinates),
             };
             emitter.flux_lm() / total * coordinates
         })

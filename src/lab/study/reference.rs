@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::sequence::{Points, Sequence};
 use crate::surface::{Grey, Rgb};
 use crate::tally::Receivers;
-use crate::transport::parallel::{How, trace_from};
+use crate::transport::parallel::{How, trace_range};
 
 use crate::lab::study::cells::Grids;
 use crate::lab::study::norms::nrms_of_mean;
@@ -135,9 +135,9 @@ impl Replicate<'_, '_> {
         let sink = || self.receivers.fixed_point_sink(self.units);
         let Self { scene, emitters, how, .. } = &self;
         if scene.is_coloured() {
-            trace_from(scene, emitters, points, 0..self.photons, Rgb::WHITE, *how, sink).complete
+            trace_range(scene, emitters, points, 0..self.photons, Rgb::WHITE, *how, sink).complete
         } else {
-            trace_from(scene, emitters, points, 0..self.photons, Grey, *how, sink).complete
+            trace_range(scene, emitters, points, 0..self.photons, Grey, *how, sink).complete
         }
     }
 }

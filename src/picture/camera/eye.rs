@@ -228,7 +228,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
 /// Coordinates of a point of an emitter, where it has more than one.
 #[inline]
 fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
-    match emitter.direct_coordinates() {
+    match emitter.kind().direct_coordinates {
         0 => [0.0; 2],
         _ => [chooser.uniform(Purpose::BeamPosition), chooser.uniform(Purpose::BeamPosition)],
     }
