@@ -49,6 +49,23 @@ mod tests {
     }
 
     #[test]
+    fn errors_by_hand() {
+        // Counts 3 and 7: s^2 = 8, R s^2 = 16. Counts 1, 2, 3, 6: s^2 = 14 / 3, R s^2 = 56 / 3.
+        assert_eq!(standard_error_of_cell(10, 58, 2), Some(4.0));
+        assert_eq!(standard_error_of_cell(12, 50, 4), Some((56.0f64 / 3.0).sqrt()));
+        assert_eq!(standard_error_of_total(12, 50, 4), standard_error_of_cell(12, 50, 4));
+        // From ten hits on the spread counts, whatever it is; of totals always.
+        assert_eq!(standard_error_of_cell(9, 81, 2), Some(10.0f64.sqrt()));
+        assert_eq!(standard_error_of_total(9, 81, 2), Some(9.0));
+        assert_eq!(standard_error_of_cell(10, 50, 2), Some(0.0));
+        assert_eq!(standard_error_of_total(9, 81, 1), None);
+        // 2^48 photons in one of 2^16 replicates: exact in 128 bits; beyond, saturated and not wrapped.
+        let whole = standard_error_of_total(1 << 48, 1 << 96, 1 << 16).unwrap();
+        assert_eq!(whole, (1u64 << 48) as f64);
+        assert!(standard_error_of_total(u64::MAX, u128::MAX, 1 << 16).unwrap() > 0.0);
+    }
+
+    #[test]
     fn few_hits_are_never_certain_and_one_replicate_knows_nothing() {
         assert_eq!(standard_error_of_cell(0, 0, 8), Some(1.0));
         assert_eq!(standard_error_of_cell(3, 9, 8), Some(2.0));

@@ -26,7 +26,8 @@ use crate::surface::{Grey, Rgb};
 
 use camera::splat::Splat;
 use camera::{Film, View, film};
-use passes::collector::{Collector, capacity};
+use passes::budget::capacity;
+use passes::collector::Collector;
 use photon_map::{Channels, SavedMap};
 pub use summary::{Chosen, PictureSummary};
 

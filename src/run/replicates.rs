@@ -106,3 +106,28 @@ fn stages(plan: &Plan, replicate: u32) -> Vec<u64> {
     let first = if replicate == 0 { first_stage(plan) } else { n };
     std::iter::successors(Some(first), |end| (*end < n).then(|| n.min(2 * end))).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Algorithm, Settings};
+    use crate::sequence::Sequence;
+
+    #[test]
+    fn the_first_replicate_doubles_and_the_others_are_traced_whole() {
+        let plan = |n: u64, sequence: Sequence| {
+            let algorithm = Algorithm { sequence, ..Algorithm::default() };
+            let settings = Settings { photons: Some(2 * n), replicates: Some(2), algorithm, seed: 1 };
+            Plan::new(&settings).unwrap()
+        };
+        let of = |n, replicate| stages(&plan(n, Sequence::SobolOwen), replicate);
+        assert_eq!(of(1 << 13, 0), [1 << 10, 1 << 11, 1 << 12, 1 << 13]);
+        assert_eq!(of(5000, 0), [1024, 2048, 4096, 5000]);
+        assert_eq!((of(1000, 0), of(1024, 0)), (vec![1000], vec![1024]));
+        assert_eq!(of(5000, 1), [5000]);
+        let numbered = Sequence::ALL.into_iter().find(|s| s.needs_number() && s.is_randomised());
+        if let Some(sequence) = numbered {
+            assert_eq!(stages(&plan(5000, sequence), 0), [5000]);
+        }
+    }
+}

@@ -93,14 +93,13 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
-        let how = self.how(interrupt, progress)?;
-        let stage = Stage { tracer: self, how, until, sink: || receivers.sink() };
+        let sink = || receivers.sink();
         // A scene in colour is traced by one walk for all sequences, any other by a walk compiled for its own.
-        let (traced, attempts) = if self.scene.is_coloured() {
-            stage.carrying(&self.points.any()?, Rgb::WHITE)
-        } else {
-            self.points.provide(stage)?
-        };
+        if self.scene.is_coloured() {
+            return self.trace_into(until, Rgb::WHITE, sink, interrupt, progress);
+        }
+        let stage = Stage { tracer: self, how: self.how(interrupt, progress)?, until, sink };
+        let (traced, attempts) = self.points.provide(stage)?;
         self.moved_on(until, attempts, traced)
     }
 

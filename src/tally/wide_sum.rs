@@ -50,4 +50,16 @@ mod tests {
             assert_eq!((sum.take(), sum.get()), (expected, 0));
         }
     }
+
+    #[test]
+    fn threads_lose_no_carry() {
+        let mut sum = WideSum::default();
+        let amount = u128::from(u64::MAX) - 12345;
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..10_000).for_each(|_| sum.add(amount)));
+            }
+        });
+        assert_eq!(sum.take(), 40_000 * amount);
+    }
 }

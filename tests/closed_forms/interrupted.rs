@@ -58,7 +58,7 @@ fn an_interrupt_in_a_later_replicate_leaves_the_finished_ones() {
     let outcome = interrupted_after((2 << 18) + 1, &settings).unwrap();
     assert_eq!((outcome.stopped_by, outcome.replicates), (StoppedBy::Interrupt, 2));
     assert_eq!((outcome.photons, outcome.ledger.total_emitted()), (2 << 18, 2 << 18));
-    assert_eq!(outcome.accounts.sum[0], outcome.ledger.absorbed[0]);
+    assert_eq!(outcome.accounts().sum[0], outcome.ledger.absorbed[0]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use caustix::files::scene_toml::description::{
     BeamSection, Description, EmitterShape, ReliefDescription, ShapeDescription,
 };
-use caustix::scene::camera::Bandwidth;
+use caustix::scene::camera::{Bandwidth, Camera, CameraSpec};
 
 /// A description with every length times `s`, its camera's included.
 pub fn scaled(mut d: Description, s: f64) -> Description {
@@ -61,7 +61,7 @@ pub fn scaled(mut d: Description, s: f64) -> Description {
         }
     }
     if let Some(camera) = &mut d.camera {
-        let spec = &mut camera.spec;
+        let mut spec = CameraSpec::clone(&camera.spec);
         spec.position *= s;
         spec.lens_radius_m *= s;
         spec.focus_m *= s;
@@ -73,6 +73,7 @@ pub fn scaled(mut d: Description, s: f64) -> Description {
             }
             of_number @ (Bandwidth::Automatic | Bandwidth::Nearest(_)) => of_number,
         };
+        camera.spec = Camera::new(spec).unwrap();
     }
     d
 }

@@ -84,7 +84,7 @@ fn cup(inclination: f64, floor: Bsdf, camera: Option<CameraSpec>) -> Scene {
             receiver("coarse", [COARSE, 2 * COARSE]),
             receiver("thin", [THIN, THIN_ROWS]),
         ],
-        camera,
+        camera: camera.map(crate::support::pictures::camera),
         ..SceneParts::default()
     })
     .unwrap()
@@ -197,10 +197,10 @@ fn the_ridge_of_the_receiver_is_the_nephroid_and_its_cusp_is_at_half_the_radius(
         assert_ridges(&format!("{inclination_deg} degrees"), |i, above, j| {
             // Row 0 is that of the greatest y.
             let row = if above { FINE - 1 - j } else { FINE + j };
-            outcome.cells[0].sum[(row * FINE + i) as usize] as f64
+            outcome.cells()[0].sum[(row * FINE + i) as usize] as f64
         });
         // Along the axis, in a row so thin that the branches leave it within a cell of the cusp: (w / 2)^(2/3) 3/4 = 0.003.
-        let row = &outcome.cells[2].sum[(THIN_ROWS / 2 * THIN) as usize..][..THIN as usize];
+        let row = &outcome.cells()[2].sum[(THIN_ROWS / 2 * THIN) as usize..][..THIN as usize];
         let peak = (0..row.len()).max_by_key(|i| row[*i]).unwrap();
         println!("{inclination_deg} degrees: {} photons in the cell at {peak} of {THIN}", row[peak]);
         assert!(peak.abs_diff(THIN as usize / 2) <= 1, "{peak}: {row:?}");

@@ -125,7 +125,7 @@ fn nothing_shines_backwards() {
     let above = plate(0.2, -0.1, 1.0, 4).replace("0.0]\nedge_u", "2.0]\nedge_u") + "side = \"both\"\n";
     let outcome =
         run(&scene(&(panel(CENTRE, [WIDTH, HEIGHT], FLUX_LM) + &above)), Sequence::SobolOwen, 1 << 12, 4, 4);
-    assert_eq!(outcome.totals.sum[0], 0);
+    assert_eq!(outcome.totals().sum[0], 0);
     assert_eq!(outcome.ledger.escaped, outcome.photons);
 }
 

@@ -168,7 +168,7 @@ fn any_file_off_centre_gives_uniform_indirect_illuminance() {
         assert_cells(file, &scene, &outcome, 0, &[uniform; 128]);
         let exact = a / (1.0 - a) * scene.emitters.flux_lm();
         assert_total(file, &outcome, outcome.receiver_flux_lm(0), exact);
-        assert_eq!(outcome.totals.sum[1], 0, "light outside the sphere");
+        assert_eq!(outcome.totals().sum[1], 0, "light outside the sphere");
         assert_eq!(outcome.ledger.absorbed[0], outcome.photons);
     }
 }

@@ -5,7 +5,7 @@ use caustix::files::scene_toml::build::build;
 use caustix::files::scene_toml::description::Description;
 use caustix::files::scene_toml::parse;
 use caustix::files::scene_toml::source::Base;
-use caustix::scene::camera::{Bandwidth, CameraSpec, Exposure, Filter, Kernel, Method};
+use caustix::scene::camera::{Bandwidth, Camera, Exposure, Filter, Kernel, Method};
 use caustix::scene::requires::requirements;
 use glam::DVec3;
 
@@ -21,7 +21,7 @@ fn read(keys: &str) -> Result<Description, Vec<Diagnostic>> {
     parse(&format!("{SCENE}[camera]\n{keys}"), "test.toml", Base::Directory(".".into()))
 }
 
-fn spec(keys: &str) -> CameraSpec {
+fn spec(keys: &str) -> Camera {
     read(keys).unwrap_or_else(|e| panic!("{keys}: {e:#?}")).camera.unwrap().spec
 }
 

@@ -7,7 +7,7 @@ use caustix::emitter::{Collimated, Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface};
 use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
-use caustix::scene::camera::CameraSpec;
+use caustix::scene::camera::{Camera, CameraSpec};
 use caustix::scene::{Scene, SceneParts};
 use caustix::surface::{Bsdf, Reflectance};
 use glam::DVec3;
@@ -37,7 +37,12 @@ pub fn panel(centre: DVec3, aim: DVec3, up: DVec3, size_m: [f64; 2], flux_lm: f6
 
 pub fn scene(surfaces: Vec<(Surface, Bsdf)>, emitters: Vec<Emitter>, camera: Option<CameraSpec>) -> Scene {
     let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp{i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, camera, ..SceneParts::default() }).unwrap()
+    Scene::new(SceneParts { surfaces, emitters, camera: camera.map(self::camera), ..SceneParts::default() })
+        .unwrap()
+}
+
+pub fn camera(spec: CameraSpec) -> Camera {
+    Camera::new(spec).unwrap()
 }
 
 pub fn plan(photons: u64, replicates: u32) -> Plan {

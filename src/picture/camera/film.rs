@@ -155,7 +155,7 @@ impl<const C: usize> Sums<C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::gather::BIAS_PER_DIFFERENCE;
+    use crate::picture::gather::{BIAS_PER_DIFFERENCE, Gathered};
 
     #[test]
     fn memory_is_told_before_it_is_taken() {
@@ -189,5 +189,31 @@ mod tests {
         sums.tiles[0] = PixelSums::UNSEEN;
         let unseen = sums.finish().bias;
         assert!(unseen[0].is_nan() && (unseen[3] / of(2.5, 3.0) - 1.0).abs() < 1e-14, "{unseen:?}");
+    }
+
+    #[test]
+    fn tiles_become_rows_and_unfinished_light_is_taken_back() {
+        let pixels = [40, 20];
+        let mut sums = Sums::<3>::new(pixels).unwrap();
+        for (i, pixel) in sums.tiles.iter_mut().enumerate() {
+            let corner = Sums::<3>::corner(pixels, i / TILE_PIXELS);
+            let k = (i % TILE_PIXELS) as u32;
+            let [column, row] = [corner[0] + k % TILE, corner[1] + k / TILE];
+            pixel.value = [f64::from(1000 * row + column), 1.0, 2.0];
+            let mut part = Gathered::new(1);
+            part.value = [0.5, 0.25, 0.125];
+            pixel.error.add(&part, 2.0, 0..1, false);
+        }
+        let value = |film: &Film<3>, [column, row]: [u32; 2]| film.value[(row * 40 + column) as usize];
+        let film = sums.finish();
+        assert_eq!(film.value.len(), 800);
+        for [column, row] in [[0, 0], [15, 15], [16, 0], [39, 19], [17, 16], [0, 16]] {
+            assert_eq!(value(&film, [column, row])[0], f64::from(1000 * row + column));
+        }
+        sums.drop_unfinished();
+        assert_eq!(value(&sums.finish(), [3, 2]), [2003.0 - 1.0, 0.5, 1.75]);
+        sums.drop_unfinished();
+        sums.scale(2.0);
+        assert_eq!(value(&sums.finish(), [3, 2]), [4004.0, 1.0, 3.5]);
     }
 }

@@ -92,3 +92,26 @@ impl<const C: usize> ErrorSums<C> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bias_is_the_difference_of_all_passes_and_what_neighbours_owe() {
+        let mut sums = ErrorSums::<1>::NOTHING;
+        let pass = |value, second, nearest_bias, sparse| {
+            let mut gathered = Gathered::<1>::new(1);
+            (gathered.value, gathered.second) = ([value], [second]);
+            (gathered.nearest_bias, gathered.sparse) = (nearest_bias, sparse);
+            gathered
+        };
+        sums.add(&pass(10.0, 7.0, 1.0, 3.0), 0.5, 0..1, true);
+        assert!((sums.bias() - (1.5 * BIAS_PER_DIFFERENCE + 0.5)).abs() < 1e-14);
+        // What one pass sees too dark and the other too bright cancels; what neighbours owe does not.
+        sums.add(&pass(10.0, 13.0, 1.0, 4.0), 0.5, 0..1, true);
+        assert_eq!(sums.bias(), 1.0);
+        assert_eq!(sums.sparse_square, 1.5 * 1.5 + 2.0 * 2.0);
+        assert!(ErrorSums::<3>::UNKNOWN.bias().is_nan() && ErrorSums::<3>::UNKNOWN.variance(4).is_nan());
+    }
+}

@@ -6,7 +6,7 @@
 //!
 //! The files in the order of use: [`kernel`] weighs photons by distance; [`faces`] and [`footprint`] say which part of a surface is
 //! the neighbourhood of a point; [`surfaces`] finds the nearest photons there; [`gathered`] holds what a pixel has; [`error`] its
-//! error and bias; [`sum`] adds the photons about one point; [`bandwidth`] chooses a radius; [`density`] is the whole.
+//! error and bias; [`sum`] adds the photons about one point; [`bandwidth`] chooses a radius from a `ladder`; [`density`] is the whole.
 
 pub mod kernel;
 pub mod faces;
@@ -15,6 +15,7 @@ pub mod surfaces;
 pub mod gathered;
 pub mod error;
 pub mod sum;
+mod ladder;
 pub mod bandwidth;
 pub mod density;
 

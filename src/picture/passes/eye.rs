@@ -75,7 +75,7 @@ impl<'a, const C: usize> Eye<'a, C> {
     ///
     /// # Errors
     /// A camera that cannot see; a picture that takes too much memory.
-    pub(crate) fn new(scene: &'a Scene, camera: &'a Camera, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
+    pub(crate) fn new(scene: &'a Scene, camera: &Camera, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
         Ok(Self {
             view: View::new(scene, camera, plan.seed())?,
             watch,
@@ -91,7 +91,7 @@ impl<'a, const C: usize> Eye<'a, C> {
     /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates; `None` where there
     /// is nothing to choose from.
     fn choose(&self, map: &PhotonMap<C>, part: f64, replicates: u32) -> Option<Settled> {
-        let camera = self.view.camera;
+        let camera = &self.view.camera;
         let mut bandwidth = camera.bandwidth;
         let mut chosen = Chosen { radius_m: None, neighbours: None };
         match bandwidth {

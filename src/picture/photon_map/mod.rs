@@ -236,3 +236,26 @@ fn guessed_radius<const C: usize>(photons: &[Photon<C>], frame: &Frame) -> f64 {
     let area = length[2] * length[1].max(length[2] / 64.0);
     (GUESSED_NEIGHBOURS * area / (std::f64::consts::PI * photons.len().max(1) as f64)).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes_of<const C: usize>(n: u32) -> usize {
+        let frame = Frame::new(DVec3::ZERO, DVec3::ONE);
+        let photon = |i: u32| {
+            let cell = [i.wrapping_mul(2_654_435_769), i.wrapping_mul(40_503 << 13), 0];
+            Photon { cell, direction: 0, primitive: 0, tag: 0, weight: [1.0; C] }
+        };
+        let PhotonMap { photons, guide, .. } = PhotonMap::build((0..n).map(photon).collect(), frame, 0.01);
+        photons.capacity() * size_of::<Photon<C>>() + guide.0.capacity() * 8 + guide.1.capacity() * 4
+    }
+
+    #[test]
+    fn a_map_takes_no_more_than_forty_bytes_a_photon() {
+        let n = 200_000;
+        assert!(bytes_of::<1>(n) <= 29 * n as usize && bytes_of::<3>(n) <= 37 * n as usize);
+        assert_eq!((size_of::<Photon<1>>(), size_of::<Photon<3>>()), (28, 36));
+        assert_eq!(bytes_of::<1>(0), 0);
+    }
+}
