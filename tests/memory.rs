@@ -7,8 +7,7 @@ mod allocator;
 #[path = "support/mod.rs"]
 mod support;
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
 
@@ -17,7 +16,7 @@ use crate::support::scenes::run;
 
 #[test]
 fn the_built_in_scene_needs_sums_and_nothing_that_grows_with_photons() {
-    let scene = build(&Description::built_in().unwrap()).unwrap();
+    let scene = scene_toml::built_in().unwrap().build().unwrap();
     assert_eq!(
         requirements(&scene),
         ["photometric table", "triangles", "smooth normals", "refraction", "receiver cells"],

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::emitter::Emits;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
 use crate::picture;

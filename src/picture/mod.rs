@@ -17,8 +17,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::scene_toml::source::sha256_hex;
-use crate::files::scene_toml::without_camera::without_camera;
+use crate::math::digest::sha256_hex;
 use crate::run::{Outcome, Plan, trace_by};
 use crate::scene::Scene;
 use crate::scene::camera::{Camera, Method};
@@ -76,10 +75,7 @@ pub struct Watch<'a> {
 /// photons have another hash.
 pub fn hash_of_photons(scene: &Scene, plan: &Plan) -> String {
     let mut all = format!("{}\n{}\n", env!("CARGO_PKG_VERSION"), settings_of(plan));
-    for (path, sha256) in &scene.identity.files {
-        all += &format!("{sha256} {path}\n");
-    }
-    all += &without_camera(&scene.identity.text);
+    all += &scene.identity.light;
     sha256_hex(all.as_bytes())
 }
 

@@ -2,10 +2,10 @@
 //! thread count, path or date).
 
 use crate::files::exr::Value;
-use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use crate::run::{Outcome, Plan};
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
+use crate::scene::receiver::{ReceiverEvents, ReceiverSide};
 
 use super::json::why_no_error;
 use super::statistics::ReceiverStatistics;

@@ -5,7 +5,8 @@ use std::ops::Deref;
 use glam::DVec3;
 
 use crate::error::Invalid;
-use crate::error::invalid::{number, vector};
+use crate::error::invalid::Interval;
+use crate::geometry::{COORDINATE, LENGTH};
 
 /// How a pixel weighs the image around its centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,8 +58,19 @@ pub const MOST_PIXELS: u64 = 1 << 26;
 pub const MOST_SAMPLES: u32 = 1 << 16;
 /// Most neighbours of a density estimate.
 pub const MOST_NEAREST: u32 = 1 << 20;
-/// Largest coordinate and length, m.
-const MOST_M: f64 = 1e9;
+/// Angles across a picture, degrees.
+pub const FOV: Interval = Interval { low: 1e-3, high: 179.0, words: "an angle from 0.001 to 179 degrees" };
+/// Radii of a lens, m.
+pub const LENS: Interval = Interval { low: 0.0, high: 1e9, words: "a radius from 0 (a pinhole) to 1e9 m" };
+/// Luminances of a background, cd/m2.
+pub const LUMINANCE: Interval = Interval { low: 0.0, high: 1e15, words: "a luminance from 0 to 1e15 cd/m2" };
+/// Luminances that become white, cd/m2.
+pub const WHITE: Interval =
+    Interval { low: 1e-9, high: 1e15, words: "\"auto\", or the luminance of white, 1e-9 to 1e15 cd/m2" };
+/// What pixels must be, in words.
+pub const PIXELS_REQUIRED: &str = "[columns, rows], each at least 1, at most 2^26 in all";
+/// What a number of neighbours must be, in words.
+pub const NEAREST_REQUIRED: &str = "a whole number of photons from 2 to 2^20";
 
 /// Photons that the automatic bandwidth takes at least.
 pub const FEWEST_NEIGHBOURS: u32 = 64;
@@ -191,12 +203,10 @@ impl Camera {
     /// [`Invalid`], with the key of `[camera]` in a scene file, for what is no number or out of the ranges of docs/SCENE.md; a point
     /// looked at that is the position; an `up` along the view; splatting through a lens.
     pub fn new(spec: CameraSpec) -> Result<Self, Invalid> {
-        const COLUMNS_AND_ROWS: &str = "[columns, rows], each at least 1, at most 2^26 in all";
         let content = |what, found: String, required: &str| {
             Err(Invalid::Content { what, found, required: required.to_string() })
         };
-        vector("position", spec.position, MOST_M, "a number of metres from -1e9 to 1e9")?;
-        let length = |what, metres| number(what, metres, [1e-9, MOST_M], "a length from 1e-9 to 1e9 m");
+        COORDINATE.vector("position", spec.position)?;
         let is_unit = |v: DVec3| (v.length() - 1.0).abs() <= 1e-9;
         if !is_unit(spec.forward) {
             return Err(Invalid::NoDirection { what: "look_at", value: spec.forward });
@@ -204,10 +214,10 @@ impl Camera {
         if !(is_unit(spec.up) && spec.up.dot(spec.forward).abs() <= 1e-9) {
             return Err(Invalid::Parallel { what: "up", to: "the view" });
         }
-        number("fov_deg", spec.fov_deg, [1e-3, 179.0], "an angle from 0.001 to 179 degrees")?;
+        FOV.check("fov_deg", spec.fov_deg)?;
         let [columns, rows] = spec.pixels;
         if !(1..=MOST_PIXELS).contains(&(u64::from(columns) * u64::from(rows))) {
-            return content("pixels", format!("pixels = [{columns}, {rows}]"), COLUMNS_AND_ROWS);
+            return content("pixels", format!("pixels = [{columns}, {rows}]"), PIXELS_REQUIRED);
         }
         if !(1..=MOST_SAMPLES).contains(&spec.samples) {
             let value = u64::from(spec.samples);
@@ -217,9 +227,9 @@ impl Camera {
                 required: "from 1 to 65536 eye paths a pixel",
             });
         }
-        number("lens_radius", spec.lens_radius_m, [0.0, MOST_M], "a radius from 0 (a pinhole) to 1e9 m")?;
+        LENS.check("lens_radius", spec.lens_radius_m)?;
         if spec.lens_radius_m > 0.0 {
-            length("focus", spec.focus_m)?;
+            LENGTH.check("focus", spec.focus_m)?;
             if spec.method == Method::Splat {
                 let found = format!("method \"splat\" and lens_radius = {}", spec.lens_radius_m);
                 return content(
@@ -231,19 +241,19 @@ impl Camera {
         }
         match spec.bandwidth {
             Bandwidth::Automatic => {}
-            Bandwidth::Radius(r) | Bandwidth::AtLeast { radius_m: r, .. } => _ = length("radius", r)?,
-            Bandwidth::Progressive(r) => _ = length("progressive_radius", r)?,
+            Bandwidth::Radius(r) | Bandwidth::AtLeast { radius_m: r, .. } => _ = LENGTH.check("radius", r)?,
+            Bandwidth::Progressive(r) => _ = LENGTH.check("progressive_radius", r)?,
             Bandwidth::Nearest(k) if (2..=MOST_NEAREST).contains(&k) => {}
             Bandwidth::Nearest(k) => {
-                let required = "a whole number of photons from 2 to 2^20";
-                return Err(Invalid::Count { what: "nearest", value: u64::from(k), required });
+                let (what, value) = ("nearest", u64::from(k));
+                return Err(Invalid::Count { what, value, required: NEAREST_REQUIRED });
             }
         }
         for luminance in spec.background_cd_m2 {
-            number("background", luminance, [0.0, 1e15], "a luminance from 0 to 1e15 cd/m2")?;
+            LUMINANCE.check("background", luminance)?;
         }
         if let Exposure::White(luminance) = spec.exposure {
-            number("exposure", luminance, [1e-9, 1e15], "the luminance of white, 1e-9 to 1e15 cd/m2")?;
+            WHITE.check("exposure", luminance)?;
         }
         Ok(Self(spec))
     }

@@ -4,11 +4,8 @@
 //! A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is the (u = 0, v = 1) corner. A
 //! mesh has a cell a face.
 
-use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use crate::geometry::{Geometry, Hit};
-use crate::scene::receiver::{Cells, Receiver};
-use crate::surface::Throughput;
-use crate::transport::weighted::Weighing;
+use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
@@ -127,18 +124,16 @@ pub struct FixedPointSink<'r, 's> {
     amount: u64,
 }
 
-impl<T: Throughput> Weighing<T> for FixedPointSink<'_, '_> {
-    #[inline]
-    fn weigh(&mut self, weight: f64) {
-        self.amount = (weight * self.units_per_photon + 0.5) as u64;
-    }
-}
-
 impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
         all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add_amount(cell, self.amount));
+    }
+
+    #[inline]
+    fn start(&mut self, weight: f64) {
+        self.amount = (weight * self.units_per_photon + 0.5) as u64;
     }
 }
 
@@ -151,29 +146,31 @@ pub(super) mod tests {
     use crate::scene::receiver::ReceiverSpec;
     use crate::surface::Grey;
 
-    pub(in crate::tally) const BOTH: (ReceiverSide, ReceiverEvents) =
-        (ReceiverSide::Both, ReceiverEvents::All);
+    pub const BOTH: (ReceiverSide, ReceiverEvents) = (ReceiverSide::Both, ReceiverEvents::All);
 
     /// The unit square at z = 0, its front up, and a box from z = 1 to 2 above it.
-    pub(in crate::tally) fn square_and_box() -> Geometry {
+    pub fn square_and_box() -> Geometry {
         let square = Shape::Rectangle(Rectangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap());
         let block = Shape::Mesh(box_mesh(DVec3::Z, DVec3::new(1.0, 1.0, 2.0)).unwrap());
         let named = |name: &str, shape| Surface { name: name.into(), shape };
         Geometry::build(vec![named("square", square), named("box", block)]).unwrap()
     }
 
-    pub(in crate::tally) fn receiver(
+    pub fn receiver(
         geometry: &Geometry,
         surface: &str,
         cells: Option<[u32; 2]>,
         (side, events): (ReceiverSide, ReceiverEvents),
     ) -> Receiver {
-        let (name, surface) = ("r".into(), surface.into());
-        Receiver::new(&ReceiverSpec { name, surface, cells, side, events }, geometry).unwrap()
+        let mut spec = ReceiverSpec::new("r", surface).unwrap().on_side(side).of_events(events);
+        if let Some(cells) = cells {
+            spec = spec.with_cells(cells).unwrap();
+        }
+        Receiver::new(&spec, geometry).unwrap()
     }
 
     /// Sends a photon straight down (or, from below, up) to the surface next to a point.
-    pub(in crate::tally) fn send<T>(
+    pub fn send<T>(
         geometry: &Geometry,
         sink: &mut impl Sink<T>,
         carried: &T,
@@ -260,7 +257,7 @@ pub(super) mod tests {
         let receivers = Receivers::new(&geometry, &all);
         let mut sink = receivers.fixed_point_sink(8.0);
         for (weight, x) in [(0.3, 0.2), (0.32, 0.2), (2.0, 0.7), (0.05, 0.7)] {
-            Weighing::<Grey>::weigh(&mut sink, weight);
+            Sink::<Grey>::start(&mut sink, weight);
             send(&geometry, &mut sink, &Grey, (x, 0.5, 0.5), 0);
         }
         assert_eq!(counts(&receivers, 0), [2 + 3, 16]);

@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
@@ -68,7 +69,7 @@ fn hits<P: Points>(scene: &Scene, points: &P, n: u64) -> Vec<u32> {
     (0..n)
         .map(|index| {
             let mut coordinates = Coordinates::new(points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
             let mut sink = Hits::default();
             let end = walk(
                 scene,

@@ -22,8 +22,7 @@ use crate::picture::photon_map::Channels;
 use crate::picture::photon_map::sink::scattering_surfaces;
 use crate::scene::Scene;
 use crate::scene::camera::{Camera, Filter};
-use crate::surface::value::Leg;
-use crate::surface::{Bsdf, luminance, luminance_of};
+use crate::surface::{Leg, Material, luminance, luminance_of};
 use crate::tally::{ReceiverSink, WideSum};
 use crate::transport::{Arrival, Sink};
 
@@ -162,7 +161,7 @@ impl<'s, const C: usize> Splat<'s, C> {
         if left > right || top > bottom {
             return false;
         }
-        let f = value::<C>(self.scene.bsdf(hit.surface), hit, -arrival.direction, wo);
+        let f = value::<C>(self.scene.material(hit.surface), hit, -arrival.direction, wo);
         if f.iter().all(|f| *f <= 0.0) || self.is_hidden(hit, arrival.whereabouts, wo, distance) {
             return false;
         }
@@ -227,8 +226,8 @@ fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
     let Some(seen) = view.pinhole.project(hit.position) else { return 0.0 };
     let to_eye = -seen.direction;
     let towards = if to_eye.dot(hit.normal) > 0.0 { hit.normal } else { -hit.normal };
-    let bsdf = view.scene.bsdf(hit.surface);
-    let f = bsdf.value_between(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
+    let bsdf = view.scene.material(hit.surface);
+    let f = bsdf.eval(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
     let h = filter::density(view.camera.filter, [0.0; 2]);
     let per_area = to_eye.dot(hit.normal).abs() / (seen.distance_m * seen.distance_m);
     luminance(f) * per_area * seen.pixels_per_sr * h
@@ -236,9 +235,9 @@ fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
 
 /// f(wi, wo) by channel, 1/sr; one channel sees white light's luminance.
 #[inline]
-fn value<const C: usize>(bsdf: &Bsdf, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; C] {
+fn value<const C: usize>(bsdf: &Material, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; C] {
     let arrived = Leg { direction: wi, front: hit.front };
-    let rgb = bsdf.value_between(hit.normal, arrived, Leg::new(wo, hit.normal));
+    let rgb = bsdf.eval(hit.normal, arrived, Leg::new(wo, hit.normal));
     if C == 1 { [luminance(rgb); C] } else { std::array::from_fn(|c| rgb[c]) }
 }
 

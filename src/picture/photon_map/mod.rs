@@ -8,7 +8,7 @@
 //! guide of 12 bytes for every 64 of them. Empty cells cost nothing, so neither stray photons far away nor a radius that is
 //! small against the scene do; a search for another radius than the map was built for gives the same answer, slower.
 
-pub mod file;
+mod saved;
 mod order;
 pub mod record;
 pub mod sink;
@@ -16,9 +16,9 @@ pub mod sink;
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use file::SavedMap;
 use order::{Key, Order};
 pub use record::{Frame, Photon};
+pub use saved::SavedMap;
 pub use sink::{Channels, Kept, PhotonStore};
 
 /// Photons for which the guide has one entry.

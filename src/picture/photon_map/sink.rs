@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::geometry::Geometry;
 use crate::scene::Scene;
-use crate::surface::{Bsdf, Grey, Rgb, Throughput};
+use crate::surface::{Grey, Material, Rgb, Throughput};
 use crate::transport::{Arrival, Sink};
 
 use crate::picture::photon_map::record::{FRONT, Frame, Photon, SCATTERED, pack};
@@ -33,7 +33,7 @@ impl Channels<3> for Rgb {
 
 /// Which surfaces of a scene scatter: those where photons are kept, and where the eye's path ends.
 pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
-    scene.bsdfs().iter().map(Bsdf::scatters).collect()
+    scene.materials().iter().map(Material::scatters).collect()
 }
 
 /// Photons that a handle collects before it gives them to the store.
