@@ -1,14 +1,15 @@
 //! Standard errors from independent replicates (METHOD 7).
 //!
-//! A run traces R sets of n = N / R points under independent randomisations. A count summed over the replicates has the
-//! standard error sqrt(R s^2), s^2 the variance of the R counts with R - 1 degrees of freedom. A cell with fewer than 10
-//! hits in all, whose spread says nothing, gets the Poisson error of (hits + 1) instead, so it is never 0.
+//! A run traces R sets of n = N / R points under independent randomisations. A count summed over the
+//! replicates has the standard error sqrt(R s^2), s^2 the variance of the R counts with R - 1 degrees of
+//! freedom. A cell with fewer than 10 hits in all, whose spread says nothing, gets the Poisson error of (hits
+//! + 1) instead, so it is never 0.
 
 /// Hits below which a cell's own spread is not used.
 pub const FEWEST_HITS: u64 = 10;
 
-/// Standard error of a count summed over `replicates` replicates, in photons, for a cell; `None` for one replicate: the
-/// points of one set are not independent and say nothing about their error.
+/// Standard error of a count summed over `replicates` replicates, in photons, for a cell; `None` for one
+/// replicate: the points of one set are not independent and say nothing about their error.
 #[inline]
 pub fn standard_error_of_cell(sum: u64, square: u128, replicates: u32) -> Option<f64> {
     if replicates < 2 {
@@ -20,15 +21,16 @@ pub fn standard_error_of_cell(sum: u64, square: u128, replicates: u32) -> Option
     standard_error_of_total(sum, square, replicates)
 }
 
-/// The same for a total, where the spread is used whatever the number of hits.
+/// Standard error of a total over `replicates` replicates, in photons: from the spread, whatever the number
+/// of hits.
 #[inline]
 pub fn standard_error_of_total(sum: u64, square: u128, replicates: u32) -> Option<f64> {
     let r = u128::from(replicates);
     if r < 2 {
         return None;
     }
-    // R s^2 = (R sum of squares - square of the sum) / (R - 1), the difference exact in integers. It overflows only
-    // beyond 2^64 photons; saturation keeps that from wrapping.
+    // R s^2 = (R sum of squares - square of the sum) / (R - 1), the difference exact in integers. It
+    // overflows only beyond 2^64 photons; saturation keeps that from wrapping.
     let spread = r.saturating_mul(square).saturating_sub(u128::from(sum) * u128::from(sum));
     Some((spread as f64 / (r - 1) as f64).sqrt())
 }

@@ -1,8 +1,8 @@
 //! Receivers: arrivals on a surface, sorted into cells.
 //!
-//! A receiver counts flux arriving before the event, whatever the material, on the sides and of the history it asks for.
-//! A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is the (u = 0, v = 1) corner. A
-//! mesh has a cell a face.
+//! A receiver counts flux arriving before the event, whatever the material, on the sides and of the history
+//! it asks for. A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is
+//! the (u = 0, v = 1) corner. A mesh has a cell a face.
 
 use crate::geometry::{Geometry, Hit};
 use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
@@ -101,7 +101,8 @@ impl<'s> Receivers<'s> {
     }
 }
 
-/// Adds arrivals to a scene's receivers. Every photon counts one, whatever it carries: of coloured ones the luminance is 1.
+/// Adds arrivals to a scene's receivers. Every photon counts one, whatever it carries: of coloured ones the
+/// luminance is 1.
 #[derive(Debug, Clone, Copy)]
 pub struct ReceiverSink<'r, 's> {
     receivers: &'r Receivers<'s>,
@@ -115,8 +116,8 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
     }
 }
 
-/// Adds arrivals of photons that start with a weight to a scene's receivers, in units of a fixed fraction of a photon:
-/// integers, so that sums do not depend on the order.
+/// Adds arrivals of photons that start with a weight to a scene's receivers, in units of a fixed fraction of
+/// a photon: integers, so that sums do not depend on the order.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedPointSink<'r, 's> {
     receivers: &'r Receivers<'s>,

@@ -1,8 +1,8 @@
 //! Receivers of weighted photons: sums of weights by channel in the cells of a scene's receivers.
 //!
-//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of photons and
-//! of arrivals a photon can make, so that no sum can overflow. Integers may be added in any order, by any thread, and give
-//! the same bits; each arrival is rounded by at most half a quantum.
+//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of
+//! photons and of arrivals a photon can make, so that no sum can overflow. Integers may be added in any
+//! order, by any thread, and give the same bits; each arrival is rounded by at most half a quantum.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -33,11 +33,12 @@ pub struct WeightedReceivers<'s> {
 }
 
 impl<'s> WeightedReceivers<'s> {
-    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at most `arrivals`
-    /// arrivals of weights from 0 to 1.
+    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at
+    /// most `arrivals` arrivals of weights from 0 to 1.
     ///
     /// # Errors
-    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the point.
+    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the
+    /// point.
     pub fn new(
         geometry: &'s Geometry,
         receivers: &'s [Receiver],

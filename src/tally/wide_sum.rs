@@ -10,7 +10,8 @@ pub struct WideSum {
 }
 
 impl WideSum {
-    /// Adds this much. Of every carry out of the lower half exactly one addition is told, so the sum is exact whatever the order.
+    /// Adds this much. Of every carry out of the lower half exactly one addition is told, so the sum is exact
+    /// whatever the order.
     #[inline]
     pub fn add(&self, amount: u128) {
         let (low, mut high) = (amount as u64, (amount >> 64) as u64);

@@ -53,7 +53,8 @@ pub(crate) fn check_memory(pixels: [u32; 2], bytes: u64) -> Result<()> {
 pub const TILE: u32 = 16;
 pub(crate) const TILE_PIXELS: usize = (TILE * TILE) as usize;
 
-/// A picture in the making: passes add to it ([`crate::picture::camera::render()`]), [`Self::finish`] makes the picture.
+/// A picture in the making: passes add to it ([`crate::picture::camera::render()`]), [`Self::finish`] makes
+/// the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sums<const C: usize> {
     pixels: [u32; 2],
@@ -82,13 +83,14 @@ impl<const C: usize> Sums<C> {
         self.pixels
     }
 
-    /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it was to have.
+    /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it
+    /// was to have.
     pub fn scale(&mut self, factor: f64) {
         self.tiles.iter_mut().for_each(|sums| sums.scale(factor));
     }
 
-    /// Takes back what the parts of a replicate that is not finished made of the picture: they are of a part of the emitters'
-    /// directions, not a sample of them.
+    /// Takes back what the parts of a replicate that is not finished made of the picture: they are of a part
+    /// of the emitters' directions, not a sample of them.
     pub fn drop_unfinished(&mut self) {
         for sums in &mut self.tiles {
             let open = sums.error.take_open();
@@ -108,8 +110,9 @@ impl<const C: usize> Sums<C> {
         &self.tiles[tile * TILE_PIXELS + (row % TILE * TILE + column % TILE) as usize]
     }
 
-    /// Estimated size of the bias of a pixel's luminance, cd/m2: the mean of what the two bandwidths say of the 3 x 3 pixels about
-    /// it. A pixel's own says nothing where the difference of the bandwidths changes its sign, and has more noise.
+    /// Estimated size of the bias of a pixel's luminance, cd/m2: the mean of what the two bandwidths say of
+    /// the 3 x 3 pixels about it. A pixel's own says nothing where the difference of the bandwidths changes
+    /// its sign, and has more noise.
     fn bias(&self, column: u32, row: u32) -> f64 {
         let own = self.at(column, row).error.bias();
         if own.is_nan() {

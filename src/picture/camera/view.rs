@@ -26,8 +26,8 @@ pub struct View<'s> {
 const RIM: u32 = 16;
 
 impl<'s> View<'s> {
-    /// A camera in a scene. `seed` is that of the pixels' samples. Inside glass, or any closed surface, is a place like
-    /// others; the luminance is that in the medium there.
+    /// A camera in a scene. `seed` is that of the pixels' samples. Inside glass, or any closed surface, is a
+    /// place like others; the luminance is that in the medium there.
     ///
     /// # Errors
     /// A camera on a surface, where it is on neither side; a lens through which a closed surface

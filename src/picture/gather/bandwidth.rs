@@ -1,12 +1,13 @@
 //! The radius of a density estimate, chosen once from all photons.
 //!
-//! At up to a thousand of the photons themselves, for a ladder of radii: the variance of the estimate from the spread of the
-//! replicates, and its bias from what the second bandwidth makes of it, less what noise contributes to that. The radius with
-//! the least mean of (variance + bias^2) over the squared density is taken. The photon that the estimate is made at belongs to one
-//! replicate, whose other photons keep away from it (they are a net); that replicate is left out.
+//! At up to a thousand of the photons themselves, for a ladder of radii: the variance of the estimate from
+//! the spread of the replicates, and its bias from what the second bandwidth makes of it, less what noise
+//! contributes to that. The radius with the least mean of (variance + bias^2) over the squared density is
+//! taken. The photon that the estimate is made at belongs to one replicate, whose other photons keep away
+//! from it (they are a net); that replicate is left out.
 //!
-//! The points are photons, so each weighs what it contributes to the picture's light: a dense caustic counts more than the
-//! thinly lit table around it.
+//! The points are photons, so each weighs what it contributes to the picture's light: a dense caustic counts
+//! more than the thinly lit table around it.
 
 use rayon::prelude::*;
 
@@ -40,8 +41,9 @@ impl ChosenRadius {
     }
 }
 
-/// The radius with the least mean squared relative error for 1 / `fraction` times the photons of this map: a run that is
-/// traced in passes chooses once, from the first. `replicates` is how many the photons of this map are numbered by.
+/// The radius with the least mean squared relative error for 1 / `fraction` times the photons of this map: a
+/// run that is traced in passes chooses once, from the first. `replicates` is how many the photons of this
+/// map are numbered by.
 pub fn choose<const C: usize>(
     footprints: &Footprints<'_>,
     map: &PhotonMap<C>,
@@ -76,8 +78,8 @@ fn least_neighbours(photons: f64) -> u32 {
 
 /// Mean squared relative error of every rung.
 ///
-/// What is finer than both bandwidths neither of them sees: the bias of a radius is taken to be no less than what narrower ones
-/// show, as far as that is more than their noise.
+/// What is finer than both bandwidths neither of them sees: the bias of a radius is taken to be no less than
+/// what narrower ones show, as far as that is more than their noise.
 fn costs(points: &[Point], fraction: f64) -> Vec<f64> {
     let n = points.len().max(1) as f64;
     let mut proven = 0.0f64;

@@ -1,8 +1,10 @@
-//! Density estimation: luminance from the photons about a point, with its spread over replicates and its bias.
+//! Density estimation: luminance from the photons about a point, with its spread over replicates and its
+//! bias.
 //!
-//! The luminance towards the eye is the sum over photons near of f(wi, wo) w photon_lm K(d), f the surface's BSDF, w the photon's
-//! weight and K a kernel of integral 1 over the part of the surface within the ball ([`crate::picture::gather::footprint`]). Photons arriving are
-//! flux per area already, so no cosine appears (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
+//! The luminance towards the eye is the sum over photons near of f(wi, wo) w photon_lm K(d), f the surface's
+//! BSDF, w the photon's weight and K a kernel of integral 1 over the part of the surface within the ball
+//! ([`crate::picture::gather::footprint`]). Photons arriving are flux per area already, so no cosine appears
+//! (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
 
 use std::sync::Arc;
 
@@ -18,11 +20,12 @@ use super::sum::Point;
 use super::surfaces::BySurface;
 use super::{SECOND, bandwidth};
 
-/// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker: Progressive Photon
-/// Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
+/// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker:
+/// Progressive Photon Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
 pub const PROGRESSIVE_ALPHA: f64 = 2.0 / 3.0;
 
-/// Radius that photons are sorted for where fewer lie within the bandwidth's than are wanted, in units of this.
+/// Radius that photons are sorted for where fewer lie within the bandwidth's than are wanted, in units of
+/// this.
 const COARSE: f64 = 16.0;
 
 /// How densities are made.
@@ -59,7 +62,8 @@ pub struct Density<'m, const C: usize> {
 }
 
 impl<'m, const C: usize> Density<'m, C> {
-    /// A density of this map; `photon_lm` is the flux of one photon, lm. [`Bandwidth::Automatic`] is chosen from the map.
+    /// A density of this map; `photon_lm` is the flux of one photon, lm. [`Bandwidth::Automatic`] is chosen
+    /// from the map.
     pub fn new(
         footprints: Arc<Footprints<'m>>,
         map: &'m PhotonMap<C>,
@@ -83,9 +87,10 @@ impl<'m, const C: usize> Density<'m, C> {
         Self { footprints, map, photon_lm, kernel: choice.kernel, reach }
     }
 
-    /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel, arrived on the
-    /// front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered, and those for which it is 0 tell nothing
-    /// about an error. Where there are too few to tell one it is asked for light along the normal, too.
+    /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel,
+    /// arrived on the front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered,
+    /// and those for which it is 0 tell nothing about an error. Where there are too few to tell one it is
+    /// asked for light along the normal, too.
     pub fn gather(
         &self,
         at: &Hit,
@@ -96,10 +101,10 @@ impl<'m, const C: usize> Density<'m, C> {
         self.gather_of(None, at, weight, value_of, into);
     }
 
-    /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen and 0 for other, times
-    /// `weight`: photons of the other side do not count as neighbours. A pixel's samples lie close together against a wide radius:
-    /// what was gathered for one, since `into` was last cleared, serves those within an eighth of the radius on the same side of the
-    /// same surface.
+    /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen
+    /// and 0 for other, times `weight`: photons of the other side do not count as neighbours. A pixel's
+    /// samples lie close together against a wide radius: what was gathered for one, since `into` was last
+    /// cleared, serves those within an eighth of the radius on the same side of the same surface.
     pub fn gather_evenly(&self, at: &Hit, weight: [f64; C], into: &mut Gathered<C>) {
         let evenly = |_, _| [1.0; C];
         let density = std::ptr::from_ref(self.map).addr();

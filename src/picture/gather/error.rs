@@ -1,7 +1,7 @@
 //! Standard error and bias of a pixel's light from photons, from what is gathered pass by pass.
 //!
-//! Error: the spread of the replicates' sums, R s^2 (METHOD 7), and what places with hardly a photon owe. Bias: the difference between
-//! the two bandwidths.
+//! Error: the spread of the replicates' sums, R s^2 (METHOD 7), and what places with hardly a photon owe.
+//! Bias: the difference between the two bandwidths.
 
 use std::ops::Range;
 
@@ -10,11 +10,12 @@ use crate::surface::luminance_of;
 use super::BIAS_PER_DIFFERENCE;
 use super::gathered::Gathered;
 
-/// What is kept of the photons of a pixel from pass to pass, to tell the error and bias of its luminance; cd/m2 and its square.
+/// What is kept of the photons of a pixel from pass to pass, to tell the error and bias of its luminance;
+/// cd/m2 and its square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorSums<const C: usize> {
-    /// Luminance at the second bandwidth less that at the first, signed: what is too dark in one pass may be too bright in
-    /// another.
+    /// Luminance at the second bandwidth less that at the first, signed: what is too dark in one pass may be
+    /// too bright in another.
     pub difference: f64,
     /// Bound on the k-NN bias ([`Gathered::nearest_bias`]).
     pub nearest_bias: f64,
@@ -41,8 +42,8 @@ impl<const C: usize> ErrorSums<C> {
     /// Error and bias that nobody knows: NaN.
     pub const UNKNOWN: Self = Self { nearest_bias: f64::NAN, sparse_square: f64::NAN, ..Self::NOTHING };
 
-    /// Adds what was gathered in a pass over photons of these replicates, each sample counting `of_sample`. Where the pass does not
-    /// finish its replicate, a later pass goes on with it.
+    /// Adds what was gathered in a pass over photons of these replicates, each sample counting `of_sample`.
+    /// Where the pass does not finish its replicate, a later pass goes on with it.
     pub fn add(&mut self, gathered: &Gathered<C>, of_sample: f64, replicates: Range<u32>, finishes: bool) {
         self.difference += (luminance_of(&gathered.second) - luminance_of(&gathered.value)) * of_sample;
         self.nearest_bias += gathered.nearest_bias * of_sample;
@@ -64,8 +65,8 @@ impl<const C: usize> ErrorSums<C> {
         std::mem::replace(&mut self.open, [0.0; C])
     }
 
-    /// Square of the standard error of the luminance, given the bandwidth, after so many whole replicates; NaN where a single one
-    /// says nothing.
+    /// Square of the standard error of the luminance, given the bandwidth, after so many whole replicates;
+    /// NaN where a single one says nothing.
     pub fn variance(&self, replicates: u32) -> f64 {
         let r = f64::from(replicates);
         let of_photons = match replicates {

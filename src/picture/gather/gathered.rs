@@ -10,20 +10,22 @@ use super::surfaces::Room;
 pub struct Gathered<const C: usize> {
     /// Luminance by channel, cd/m2.
     pub value: [f64; C],
-    /// The same at the second bandwidth, from which the bias is told.
+    /// Luminance at the second bandwidth, from which the bias is told, by channel, cd/m2.
     pub second: [f64; C],
     /// Luminance (Y) that each replicate's photons make; they add up to that of `value`.
     pub by_replicate: Vec<f64>,
-    /// Standard error (Y) owed to places with fewer than ten photons, whose spread says nothing: that of (photons + 1).
+    /// Standard error (Y) owed to places with fewer than ten photons, whose spread says nothing: that of
+    /// (photons + 1).
     pub sparse: f64,
-    /// Upper bound on the k-NN bias in Y: (k - 1) / (pi r^2) is unbiased only for independent photons; for QMC points the
-    /// factor lies between k - 1 and k - 1/2.
+    /// Upper bound on the k-NN bias in Y: (k - 1) / (pi r^2) is unbiased only for independent photons; for
+    /// QMC points the factor lies between k - 1 and k - 1/2.
     pub nearest_bias: f64,
     /// Room for the gather in hand.
     pub(crate) room: Room,
     /// Radius of the last gather, m.
     pub(crate) reach_m: f64,
-    /// How far the last ones were sought, m: where the next search begins; what it finds does not depend on it.
+    /// How far the last ones were sought, m: where the next search begins; what it finds does not depend on
+    /// it.
     pub(crate) sought_m: f64,
     /// What was gathered evenly since the last [`Self::clear`].
     pub(crate) places: Places<C>,
@@ -55,7 +57,8 @@ impl<const C: usize> Gathered<C> {
         self.places.used = 0;
     }
 
-    /// Adds what was found for a weight of 1, times `weight`. The parts of the replicates are those of the luminance found.
+    /// Adds what was found for a weight of 1, times `weight`. The parts of the replicates are those of the
+    /// luminance found.
     pub(crate) fn add_weighted(&mut self, found: &Self, weight: [f64; C]) {
         let weighted: [f64; C] = std::array::from_fn(|c| weight[c] * found.value[c]);
         let y = luminance_of(&found.value);
@@ -72,14 +75,15 @@ impl<const C: usize> Gathered<C> {
     }
 }
 
-/// How far, in radii, a place may be from one where light was gathered evenly to take the same: its kernels are the same but for a
-/// eighth of their radius.
+/// How far, in radii, a place may be from one where light was gathered evenly to take the same: its kernels
+/// are the same but for a eighth of their radius.
 const SAME_PLACE: f64 = 1.0 / 8.0;
 
 /// Places of one pixel that are remembered of each density.
 const MOST_PLACES: usize = 32;
 
-/// Places where light was gathered evenly, with what was found there. Those in use come first; the others are kept for their room.
+/// Places where light was gathered evenly, with what was found there. Those in use come first; the others are
+/// kept for their room.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Places<const C: usize> {
     all: Vec<Place<C>>,

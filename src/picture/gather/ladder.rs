@@ -13,8 +13,8 @@ pub(super) const SECOND_STEPS: usize = 2;
 /// Rungs: radii over a factor 2^(20 / 4) = 32, numbers of neighbours over a factor 1024.
 pub(super) const RUNGS: usize = 21;
 
-/// Median number of neighbours within the widest radius of the ladder, and so twice that of the widest that can be chosen:
-/// beyond it a picture takes too long.
+/// Median number of neighbours within the widest radius of the ladder, and so twice that of the widest that
+/// can be chosen: beyond it a picture takes too long.
 const MOST_NEIGHBOURS: usize = 1024;
 
 /// Part of all photons that a bandwidth holds at most: one that holds more says nothing of a place.
@@ -72,7 +72,8 @@ impl Ladder {
         if map.photons().len() < FEWEST {
             return None;
         }
-        // The widest that can be chosen has half the area of the widest of the ladder. One more: the photon itself is among them.
+        // The widest that can be chosen has half the area of the widest of the ladder. One more: the photon
+        // itself is among them.
         let local = (2.0 * MOST_OF_ALL * map.photons().len() as f64) as usize;
         let k = MOST_NEIGHBOURS.min(local.max(FEWEST_LOCAL as usize)) + 1;
         let mut found = Vec::new();
@@ -110,7 +111,8 @@ impl Ladder {
         let own = &map.photons()[place];
         let centre = map.position(own);
         let about = footprints.of_primitive(centre, own.primitive)?;
-        // Kernels are linear in d^2: photons between two rungs are kept as their number and the sum of their d^2.
+        // Kernels are linear in d^2: photons between two rungs are kept as their number and the sum of their
+        // d^2.
         let mut rings = vec![[(0.0, 0.0); RUNGS]; self.replicates];
         let widest = self.radii_m[RUNGS - 1];
         let squares = self.radii_m.map(|r| r * r);
@@ -177,7 +179,8 @@ impl Ladder {
                 point.variance[i] = all * spread;
                 point.noise[i] = all * all / m * change_spread;
             } else {
-                // Independent photons; between kernels of areas 1 and 2 the covariance is that of their product.
+                // Independent photons; between kernels of areas 1 and 2 the covariance is that of their
+                // product.
                 point.variance[i] = counted.max(1.0) * kernel.roughness() * heights[i] * heights[i];
                 point.noise[i] = point.variance[i] * 0.25;
             }

@@ -41,8 +41,8 @@ impl Budget {
         self.capacity.saturating_sub(self.held)
     }
 
-    /// Photons that so many traced ones are likely to leave; 0 while nothing is known, and where all are kept if they can be:
-    /// only that they cannot is a reason then.
+    /// Photons that so many traced ones are likely to leave; 0 while nothing is known, and where all are kept
+    /// if they can be: only that they cannot is a reason then.
     pub(crate) fn foretold(&self, photons: u64) -> usize {
         if self.traced == 0 || self.keep {
             return 0;
@@ -50,8 +50,9 @@ impl Budget {
         with_reserve(photons as f64 * (self.kept as f64 / self.traced as f64)) as usize
     }
 
-    /// Where the next range ends: at `end`, or where as many photons as there is memory for are to be expected. Ranges cut by memory
-    /// are a power of two long and begin at a multiple of it: each is a net by itself.
+    /// Where the next range ends: at `end`, or where as many photons as there is memory for are to be
+    /// expected. Ranges cut by memory are a power of two long and begin at a multiple of it: each is a net by
+    /// itself.
     pub(crate) fn next_end(&self, from: u64, end: u64) -> u64 {
         let mut length = end - from;
         if self.foretold(length) <= self.capacity {

@@ -1,9 +1,10 @@
-//! The passes of a picture from photon maps: photons are kept up to the camera's memory, shown to the camera, dropped.
+//! The passes of a picture from photon maps: photons are kept up to the camera's memory, shown to the camera,
+//! dropped.
 //!
-//! Photons are accepted range by range of a replicate's indices; a range is a power of two where memory decides it, so that
-//! it is a net by itself. How many photons a range will leave is foretold from those before it. Where that fails the store
-//! is full before the range ends: receivers have counted it, its photons are dropped, and it is traced again in halves for
-//! the camera alone.
+//! Photons are accepted range by range of a replicate's indices; a range is a power of two where memory
+//! decides it, so that it is a net by itself. How many photons a range will leave is foretold from those
+//! before it. Where that fails the store is full before the range ends: receivers have counted it, its
+//! photons are dropped, and it is traced again in halves for the camera alone.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -74,7 +75,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         })
     }
 
-    /// Takes a tracer on to photon number `end`, in as many ranges as memory asks for. An incomplete one is not accepted.
+    /// Takes a tracer on to photon number `end`, in as many ranges as memory asks for. An incomplete one is
+    /// not accepted.
     ///
     /// # Errors
     /// Those of tracing, and of a pass.
@@ -153,8 +155,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.replicates = self.replicates.max(replicate + 1);
     }
 
-    /// A range that left more photons than there was room for, traced for the camera alone: at once where the room was
-    /// what others left, else in halves.
+    /// A range that left more photons than there was room for, traced for the camera alone: at once where the
+    /// room was what others left, else in halves.
     fn again<T: Channels<C>>(&mut self, before: Tracer<'_>, to: u64, carried: T) -> Result<()> {
         let had_all_room = self.budget.held == 0;
         self.pass_unless_empty()?;
@@ -178,7 +180,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         Ok(())
     }
 
-    /// Takes the photons of another run of the scene for its own; [`crate::picture::check_saved`] has passed them.
+    /// Takes the photons of another run of the scene for its own; [`crate::picture::check_saved`] has passed
+    /// them.
     pub(crate) fn adopt(&mut self, saved: SavedMap<C>) {
         self.planned = saved.photons_traced;
         self.replicates = saved.replicates;
@@ -190,8 +193,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.held = [vec![not], vec![scattered]];
     }
 
-    /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that of the run as
-    /// planned. Light that no photon brings is seen in the last pass.
+    /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that
+    /// of the run as planned. Light that no photon brings is seen in the last pass.
     fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
         let started = Instant::now();
         if last {
@@ -223,8 +226,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         Ok(self.budget.keep.then(|| maps.each_ref().map(PhotonMap::photons).concat()))
     }
 
-    /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions, not a sample of
-    /// them. Of the first replicate, without which there is nothing, what is finished stays.
+    /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions,
+    /// not a sample of them. Of the first replicate, without which there is nothing, what is finished stays.
     fn drop_unfinished(&mut self) {
         if self.whole || self.replicates < 2 {
             return;

@@ -39,8 +39,9 @@ pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
 /// Photons that a handle collects before it gives them to the store.
 const HANDFUL: usize = 1 << 8;
 
-/// Most photons of a block. A full one is large enough for allocators to map it by itself, so that its memory is the system's again
-/// when it is dropped; many small ones would stay with the process beside the map that they were copied into.
+/// Most photons of a block. A full one is large enough for allocators to map it by itself, so that its memory
+/// is the system's again when it is dropped; many small ones would stay with the process beside the map that
+/// they were copied into.
 const BLOCK: usize = 1 << 21;
 
 /// Photons kept, in blocks; any number of threads add to it, and the order of the blocks means nothing.
@@ -76,13 +77,14 @@ impl<const C: usize> PhotonStore<C> {
         self.frame
     }
 
-    /// Bounds the number of photons it takes from here on until [`Self::take`], give or take two blocks a thread.
+    /// Bounds the number of photons it takes from here on until [`Self::take`], give or take two blocks a
+    /// thread.
     pub fn limit(&mut self, most: usize) {
         self.most = most;
     }
 
-    /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair sample and is
-    /// dropped.
+    /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair
+    /// sample and is dropped.
     pub fn take(&mut self) -> Option<Kept<C>> {
         let all = [0, 1].map(|k| {
             let blocks = self.blocks[k].get_mut().unwrap_or_else(PoisonError::into_inner);
@@ -112,8 +114,8 @@ impl<const C: usize> PhotonStore<C> {
     }
 }
 
-/// Adds photons to the last block, and to new ones when it is full. A block is as large as all before it, so none is ever copied to
-/// grow, and at most half of them is empty.
+/// Adds photons to the last block, and to new ones when it is full. A block is as large as all before it, so
+/// none is ever copied to grow, and at most half of them is empty.
 fn add<const C: usize>(blocks: &mut Vec<Vec<Photon<C>>>, mut photons: &[Photon<C>]) {
     while !photons.is_empty() {
         let room = blocks.last().map_or(0, |block| block.capacity() - block.len());
@@ -136,15 +138,15 @@ pub fn frame_of(geometry: &Geometry) -> Frame {
     Frame::new(low, high)
 }
 
-/// Keeps the photons of one batch that arrive on scattering surfaces, but for those that no event preceded, and adds
-/// all arrivals to a scene's receivers.
+/// Keeps the photons of one batch that arrive on scattering surfaces, but for those that no event preceded,
+/// and adds all arrivals to a scene's receivers.
 #[derive(Debug)]
 pub struct PhotonSink<'r, 's, const C: usize> {
     receivers: ReceiverSink<'r, 's>,
     store: &'r PhotonStore<C>,
     replicate: u32,
-    /// Whether the photon on its way has met a scattering surface. Where a table let it pass unscattered this says so
-    /// too: it tells which density a photon belongs to, never whether it counts.
+    /// Whether the photon on its way has met a scattering surface. Where a table let it pass unscattered this
+    /// says so too: it tells which density a photon belongs to, never whether it counts.
     scattered: bool,
     kept: [Vec<Photon<C>>; 2],
 }
