@@ -10,7 +10,7 @@ use glam::DVec3;
 use super::Emission;
 use crate::math::trig::sin_cos;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::{Points, to_unit_f64};
 
 /// The shape of a beam's cross-section; half-axes in metres.
@@ -39,7 +39,7 @@ impl Collimated {
     /// A photon's start: uniform over the cross-section.
     #[inline]
     pub fn emit<P: Points>(&self, u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
-        let u1 = coordinates.remainder(u, Purpose::BeamPosition);
+        let u1 = coordinates.rest(u, Purpose::BeamPosition);
         let u2 = to_unit_f64(coordinates.draw(Purpose::BeamPosition));
         let offset = match self.section {
             CrossSection::Rectangle(x, y) => x * (2.0 * u1 - 1.0) + y * (2.0 * u2 - 1.0),

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::Emission;
 use crate::math::trig::sin_cos;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::{Points, to_unit_f64};
 
 /// A point emitter of constant intensity flux / (4 pi).
@@ -25,7 +25,7 @@ impl Isotropic {
     /// A photon's start: cos(theta) and phi uniform.
     #[inline]
     pub fn emit<P: Points>(&self, u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
-        let u1 = coordinates.remainder(u, Purpose::EmissionTheta);
+        let u1 = coordinates.rest(u, Purpose::EmissionTheta);
         let u2 = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
         let cos_theta = 1.0 - 2.0 * u1;
         // sin^2 = 4 u (1 - u): no cancellation towards either pole.

@@ -19,10 +19,10 @@ use glam::DVec3;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::solve::Solver;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::discrete::Discrete;
 use crate::sample::method::Sampling;
-use crate::sample::rejection::UniformMap;
+use crate::sample::uniform_map::UniformMap;
 use crate::sequence::Points;
 
 pub use collimated::Collimated;

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 
 use super::Emission;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::{Points, to_unit_f64};
 use crate::surface::lambertian::cosine_direction;
 
@@ -72,7 +72,7 @@ impl Panel {
     /// A photon's start: uniform over the rectangle, cosine law about the aim.
     #[inline]
     pub fn emit<P: Points>(&self, u: Reusable, coordinates: &mut Coordinates<'_, P>) -> Emission {
-        let x = coordinates.remainder(u, Purpose::BeamPosition);
+        let x = coordinates.rest(u, Purpose::BeamPosition);
         let y = to_unit_f64(coordinates.draw(Purpose::BeamPosition));
         let u1 = to_unit_f64(coordinates.draw(Purpose::EmissionTheta));
         let u2 = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));

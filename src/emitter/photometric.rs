@@ -21,9 +21,10 @@ use crate::photometry::Photometry;
 use crate::photometry::web::PhotometricType;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::Coordinates;
-use crate::sample::grid::{Grid, GridPoint};
+use crate::sample::cell::GridPoint;
+use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
-use crate::sample::rejection::UniformMap;
+use crate::sample::uniform_map::UniformMap;
 use crate::sequence::Points;
 
 /// A photometric point emitter.

@@ -49,7 +49,7 @@ impl Material {
             Self::Lambertian { reflectance } if wi.front == wo.front => {
                 reflectance.by_channel().map(|part| part * FRAC_1_PI)
             }
-            Self::Tabulated(table) => table.value(outward, wi, wo),
+            Self::Tabulated(table) => table.eval(outward, wi, wo),
             Self::Lambertian { .. } | Self::Dielectric(_) | Self::Mirror { .. } | Self::Absorber => [0.0; 3],
         }
     }

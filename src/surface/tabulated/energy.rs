@@ -1,8 +1,9 @@
 //! Albedos above 1: refused, or scaled to 1, as the scene asks; never silently.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::surface::tabulated::Energy;
+use crate::surface::tabulated::face::Face;
 use crate::surface::tabulated::layer::Layer;
-use crate::surface::tabulated::{Energy, Face};
 
 /// Albedos up to here are 1 as far as values in f32 can tell.
 const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;

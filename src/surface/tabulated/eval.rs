@@ -1,4 +1,4 @@
-//! A table as the eye sees it: its value between two directions, and what it leaves of the light beyond.
+//! The value of a table between two directions, and what it leaves of the light beyond.
 
 use glam::DVec3;
 
@@ -20,15 +20,26 @@ pub struct Beyond {
 
 impl Tabulated {
     /// f, 1/sr, by channel, of light from wi into wo on a facet with this outward normal.
-    pub fn value(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
+    pub fn eval(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
         let cos_o = wo.direction.dot(outward).abs();
         if cos_o == 0.0 {
             return [0.0; 3];
         }
         let quantity = if wi.front == wo.front { Quantity::Reflection } else { Quantity::Transmission };
+        self.projected(outward, wi, quantity, wo.direction).map(|g| g / cos_o)
+    }
+
+    /// g = f cos(theta_o), 1/sr, by channel: of the lobe that reflects or of the one that transmits, also where it reaches below
+    /// its horizon. Its integral over all wo and both lobes is the albedo.
+    pub fn projected(&self, outward: DVec3, wi: Leg, quantity: Quantity, wo: DVec3) -> [f64; 3] {
         let (face, arrival) = self.arriving(outward, wi);
-        let lobes = self.lobes(face, &arrival, || self.along(outward));
-        lobes.eval_cos(quantity, wo.direction).map(|g| g / cos_o)
+        self.lobes(face, &arrival, || self.along(outward)).projected(quantity, wo)
+    }
+
+    /// Parts of the light from wi that are scattered, by channel, below the horizon included.
+    pub fn albedo(&self, outward: DVec3, wi: Leg) -> [f64; 3] {
+        let (face, arrival) = self.arriving(outward, wi);
+        self.lobes(face, &arrival, || self.along(outward)).albedo(face.coloured)
     }
 
     /// Where an eye path that arrives along `direction` on the side `front` goes on to: the light that the table leaves comes
@@ -48,8 +59,7 @@ impl Tabulated {
                 arrival.specular(Quantity::Reflection).normalize()
             };
             // Light of that side, on its way here.
-            let (face, arrival) = self.arriving(outward, Leg { direction, front: lit_front });
-            let albedo = self.lobes(face, &arrival, || self.along(outward)).albedo(face.coloured);
+            let albedo = self.albedo(outward, Leg { direction, front: lit_front });
             Some(Beyond { direction, through, part: albedo.map(|a| (1.0 - a).max(0.0)) })
         })
     }
