@@ -92,7 +92,7 @@ impl CompactGrids {
     }
 
     /// Slices added so far.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.slices.len()
     }
 
@@ -138,7 +138,12 @@ impl CompactGrids {
     /// column and phi: points that are evenly spread over the square are so over the lobe. Else the cell has a coordinate of its
     /// own.
     #[inline(always)]
-    fn invert<C: Chooser>(&self, slice: usize, solver: Solver, chooser: &mut C) -> (GridPoint, Option<Located>) {
+    fn invert<C: Chooser>(
+        &self,
+        slice: usize,
+        solver: Solver,
+        chooser: &mut C,
+    ) -> (GridPoint, Option<Located>) {
         let mut u = chooser.reusable(Purpose::Scatter);
         if chooser.reuses() {
             let v = chooser.reusable(Purpose::Scatter);

@@ -105,7 +105,12 @@ impl Grid {
         cell.place(row, column, [u_theta, u_phi], solver).0
     }
 
-    fn reject<C: Chooser>(&self, mut u: Reusable, chooser: &mut C, rejection: Rejection) -> Option<GridPoint> {
+    fn reject<C: Chooser>(
+        &self,
+        mut u: Reusable,
+        chooser: &mut C,
+        rejection: Rejection,
+    ) -> Option<GridPoint> {
         let propose = |u| {
             let point = self.angles.uniform(u);
             (point, self.value(point.theta, point.phi) / self.largest)
@@ -167,122 +172,38 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sequence::hash::mix64;
+    use crate::sample::coordinates::Coordinates;
+    use crate::sequence::independent::IndependentPoints;
+    use std::f64::consts::PI;
 
-    fn table(rows: usize, columns: usize, f: impl Fn(usize, usize) -> f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-        let polar = (0..=rows).map(|i| PI * i as f64 / rows as f64).collect();
-        let azimuth = (0..=columns).map(|j| 2.0 * PI * j as f64 / columns as f64).collect();
-        let values =
-            (0..=rows).flat_map(|i| (0..=columns).map(move |j| (i, j))).map(|(i, j)| f(i, j)).collect();
-        (polar, azimuth, values)
+    #[test]
+    fn integral_of_a_constant() {
+        let polar: Vec<f64> = (0..=180).map(|i| PI * f64::from(i) / 180.0).collect();
+        let azimuth: Vec<f64> = (0..=36).map(|j| 2.0 * PI * f64::from(j) / 36.0).collect();
+        let grid = Grid::new(&polar, &azimuth, &[2.5; 181 * 37]).unwrap();
+        assert!((grid.integral() - 10.0 * PI).abs() < 1e-12);
     }
 
-    fn lumpy(i: usize, j: usize) -> f64 {
-        let j = j % 24;
-        if (i + 3 * j).is_multiple_of(5) || j == 7 {
-            0.0
-        } else {
-            f64::from(((i * 31 + j * 17) % 23) as u32).powi(3)
+    #[test]
+    fn proposals_follow_the_acceptance() {
+        // Values 1 at the poles' far ends and 3 between: proposals per direction are solid angle x largest / integral.
+        let polar = [0.0, 1.0, 2.0, PI];
+        let azimuth = [0.0, 2.0, 2.0 * PI];
+        let values = [1.0, 1.0, 1.0, 3.0, 2.0, 3.0, 3.0, 0.5, 3.0, 1.0, 1.0, 1.0];
+        let grid = Grid::new(&polar, &azimuth, &values).unwrap();
+        let points = IndependentPoints::new(1, 0);
+        let n = 100_000u64;
+        let mut drawn = 0;
+        for i in 0..n {
+            let mut c = Coordinates::new(&points, i, true);
+            let u = c.draw_reusable(Purpose::Emission);
+            assert!(grid.reject(u, &mut c, Rejection::Table).is_some());
+            drawn += u64::from(c.drawn());
         }
-    }
-
-    #[test]
-    fn sample_then_invert_returns_the_coordinates() {
-        let (p, a, v) = table(36, 24, lumpy);
-        let grid = Grid::new(&p, &a, &v).unwrap();
-        for i in 0..20_000u64 {
-            let (u1, u2) = (mix64(2 * i), to_unit_f64(mix64(2 * i + 1)));
-            let point = grid.sample(u1, u2, Solver::DEFAULT);
-            let (v1, v2) = grid.invert(point.theta, point.phi).unwrap();
-            // The remainder resolves theta to 2^-46 of the cell; angles are rounded to 2^-52 of a turn against cells
-            // of a tenth, and u inside a cell is worth its probability.
-            assert!(v1.abs_diff(u1) as f64 / TWO_TO_64 < 1e-13, "{i}: {v1} {u1}");
-            assert!(
-                (v2 - u2).abs() < 2e-13 || grid.pdf_omega(point.theta, point.phi) < 1e-6,
-                "{i}: {v2} {u2}"
-            );
-        }
-    }
-
-    #[test]
-    fn jacobian_is_the_inverse_density_pointwise() {
-        // d(omega)/d(u1, u2) by central differences against 1 / pdf: no random numbers, no histogram.
-        let (p, a, v) = table(12, 8, lumpy);
-        let grid = Grid::new(&p, &a, &v).unwrap();
-        let mut checked = 0;
-        for i in 0..3000u64 {
-            let (u1, u2) = (mix64(i) | 1 << 40, 0.05 + 0.9 * to_unit_f64(mix64(!i)));
-            let (h1, h2) = (1u64 << 38, 1e-6);
-            // Away from the edges of the cell's share of u1: where a corner is zero the map has a square root there.
-            let mut rest = Reusable::fresh(u1);
-            grid.choice.choose(&mut rest);
-            if !(0.01..0.99).contains(&to_unit_f64(rest.bits())) {
-                continue;
-            }
-            let at = |du: i64, dv: f64| {
-                grid.sample(u1.wrapping_add_signed(du * h1 as i64), u2 + dv, Solver::DEFAULT)
-            };
-            let (here, up, down, right, left) = (at(0, 0.0), at(1, 0.0), at(-1, 0.0), at(0, h2), at(0, -h2));
-            let cell = |q: &GridPoint| grid.locate(q.theta, q.phi).map(|(i, j, ..)| (i, j));
-            if cell(&up) != cell(&down) || cell(&left) != cell(&right) {
-                continue;
-            }
-            let d1 = (up.direction - down.direction) / (2.0 * h1 as f64 / TWO_TO_64);
-            let d2 = (right.direction - left.direction) / (2.0 * h2);
-            let jacobian = d1.cross(d2).length();
-            let product = jacobian * grid.pdf_omega(here.theta, here.phi);
-            assert!((product - 1.0).abs() < 1e-4, "{i}: {product}");
-            checked += 1;
-        }
-        assert!(checked > 2500);
-    }
-
-    #[test]
-    fn integral_of_a_constant_and_of_a_cosine() {
-        let (p, a, v) = table(180, 36, |_, _| 2.5);
-        assert!((Grid::new(&p, &a, &v).unwrap().integral() - 10.0 * PI).abs() < 1e-12);
-    }
-
-    #[test]
-    fn one_cell_and_the_largest_table() {
-        let one = Grid::new(&[0.0, 1.0], &[0.0, 1.0], &[1.0, 2.0, 3.0, 4.0]).unwrap();
-        assert!(one.choice().is_single());
-        let (v1, v2) = one.invert(0.5, 0.5).unwrap();
-        let back = one.sample(v1, v2, Solver::DEFAULT);
-        assert!((back.theta - 0.5).abs() < 1e-12 && (back.phi - 0.5).abs() < 1e-12);
-        let (p, a, v) = table(720, 360, |i, j| f64::from((i * j % 1000) as u32) * 1e-9 + 1.0);
-        let large = Grid::new(&p, &a, &v).unwrap();
-        assert!(large.memory_bytes() < 40 << 20, "{}", large.memory_bytes());
-        assert!((large.sample(u64::MAX, 0.5, Solver::DEFAULT).theta - PI).abs() < 0.01);
-    }
-
-    #[test]
-    fn cells_of_zero_flux_are_never_chosen_and_rare_cells_are() {
-        let (p, a, mut v) = table(6, 8, |_, _| 0.0);
-        v[3 * 9 + 4] = 1.0; // One node: four cells around it.
-        v[1] = 1e-12;
-        let grid = Grid::new(&p, &a, &v).unwrap();
-        for i in 0..10_000u64 {
-            let q = grid.sample(mix64(i), to_unit_f64(mix64(!i)), Solver::DEFAULT);
-            assert!(grid.value(q.theta, q.phi) > 0.0);
-        }
-        // The very first fraction belongs to the rare cell at the pole.
-        let first = grid.sample(0, 0.5, Solver::DEFAULT);
-        assert!(first.theta <= p[1]);
-        assert!(grid.cell_probability(0, 0) > 0.0 && grid.cell_probability(5, 5) == 0.0);
-    }
-
-    #[test]
-    fn bad_tables_are_refused() {
-        let refused = |p: &[f64], a: &[f64], v: &[f64]| Grid::new(p, a, v).is_err();
-        assert!(refused(&[0.0], &[0.0, 1.0], &[1.0, 1.0]));
-        assert!(refused(&[0.0, 1.0], &[0.0, 1.0], &[1.0; 3]));
-        assert!(refused(&[0.0, 0.0], &[0.0, 1.0], &[1.0; 4]));
-        assert!(refused(&[0.0, 4.0], &[0.0, 1.0], &[1.0; 4]));
-        assert!(refused(&[0.0, 1.0], &[0.0, 7.0], &[1.0; 4]));
-        assert!(refused(&[0.0, 1.0], &[0.0, 1.0], &[0.0; 4]));
-        assert!(refused(&[0.0, 1.0], &[0.0, 1.0], &[1.0, f64::NAN, 1.0, 1.0]));
-        assert!(refused(&[0.0, 1.0], &[0.0, 1.0], &[1.0, -1.0, 1.0, 1.0]));
-        assert!(refused(&[0.0, 1.0], &[0.0, 1.0], &[1e308; 4].map(|v: f64| v * 10.0)));
+        // 3 coordinates a proposal; the number of proposals is geometric with mean 1/p, variance (1 - p)/p^2.
+        let expected = grid.proposals_of_table();
+        let (mean, n) = (drawn as f64 / 3.0 / n as f64, n as f64);
+        let z = (mean - expected) / (expected * (expected - 1.0) / n).sqrt();
+        assert!(z.abs() < 4.0, "{mean} proposals, {expected} expected");
     }
 }

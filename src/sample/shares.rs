@@ -173,3 +173,118 @@ fn guide(guide: &mut Vec<u32>, low: &[u64], bits: u32) {
         low.partition_point(|l| *l <= first) as u32 - 1
     }));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shares with a slice of these fluxes after one of equal ones.
+    fn shares(rows: usize, columns: usize, fluxes: &[f64]) -> Shares {
+        let angles = |n: usize, step: f64| (0..=n).map(|k| k as f64 * step).collect::<Vec<f64>>();
+        let mut shares = Shares::new(&Angles::new(&angles(rows, 0.1), &angles(columns, 0.2)).unwrap());
+        shares.push(&vec![1.0; rows * columns]);
+        shares.push(fluxes);
+        shares
+    }
+
+    /// Tables with rows and cells of zero flux in all places, rare cells, and as few rows or columns as there can be.
+    fn tables() -> Vec<(usize, usize, Vec<f64>)> {
+        let of = |rows: usize, columns: usize, f: fn(usize, usize) -> f64| {
+            (rows, columns, (0..rows * columns).map(|k| f(k / columns, k % columns)).collect())
+        };
+        vec![
+            of(6, 4, |_, _| 1.0),
+            of(7, 5, |i, j| if i % 3 == 0 || j == 2 { 0.0 } else { (1 + i * j) as f64 }),
+            of(8, 3, |i, j| if (2..6).contains(&i) { 0.0 } else { 1e-12f64.powi(((i + j) % 2) as i32) }),
+            of(5, 6, |i, j| if (i, j) == (1, 2) || (i, j) == (1, 3) { 1.0 } else { 0.0 }),
+            of(1, 9, |_, j| (j % 4) as f64),
+            of(9, 1, |i, _| (i % 4) as f64),
+            of(2, 1, |i, _| if i == 0 { 1.0 } else { 1e-30 }),
+        ]
+    }
+
+    /// What each of these widths owns: (first fraction, number of fractions).
+    fn owned(widths: &[u64]) -> Vec<(u128, u128)> {
+        let mut low = 0;
+        let all = widths.iter().map(|w| {
+            low += u128::from(*w);
+            (low - u128::from(*w), u128::from(*w))
+        });
+        all.collect()
+    }
+
+    /// Fractions at which something begins or ends, those beside them, and some others.
+    fn fractions(owned: &[(u128, u128)]) -> Vec<u64> {
+        let edges = owned.iter().flat_map(|(low, width)| [*low, low + width, low + width / 2]);
+        let beside = edges.flat_map(|e| [e.saturating_sub(1), e, e + 1]);
+        beside.chain([0, 1, 1 << 63]).filter_map(|e| u64::try_from(e).ok()).chain([u64::MAX]).collect()
+    }
+
+    #[test]
+    fn every_fraction_belongs_to_the_cell_that_owns_it() {
+        for (rows, columns, fluxes) in tables() {
+            let shares = shares(rows, columns, &fluxes);
+            let cells = owned(&integer_widths(&fluxes).unwrap());
+            for bits in fractions(&cells) {
+                let expected =
+                    cells.iter().position(|(low, width)| u128::from(bits).wrapping_sub(*low) < *width);
+                let mut u = Reusable::fresh(bits);
+                let [row, column] = shares.choose(1, &mut u);
+                assert_eq!(Some(row * columns + column), expected, "{rows} x {columns}: {bits}");
+                let (low, width) = cells[row * columns + column];
+                assert_eq!(u128::from(u.bits()), ((u128::from(bits) - low) << 64) / width);
+            }
+        }
+    }
+
+    #[test]
+    fn every_fraction_belongs_to_the_row_that_owns_it() {
+        for (rows, columns, fluxes) in tables() {
+            let shares = shares(rows, columns, &fluxes);
+            let cells = owned(&integer_widths(&fluxes).unwrap());
+            let row = |r: &[(u128, u128)]| (r[0].0, r.iter().map(|(_, width)| width).sum::<u128>());
+            let by_row: Vec<(u128, u128)> = cells.chunks(columns).map(row).collect();
+            for bits in fractions(&by_row) {
+                let expected =
+                    by_row.iter().position(|(low, width)| u128::from(bits).wrapping_sub(*low) < *width);
+                let (row, share) = shares.row_of(1, bits);
+                assert_eq!(Some(row), expected, "{rows} x {columns}: {bits}");
+                let (low, width) = by_row[row];
+                assert_eq!((u128::from(share.low), u128::from(share.width)), (low, width % (1 << 64)));
+                // Columns: at the fractions of the second coordinate at which a cell of the row begins, and just before.
+                for (column, (begin, part)) in cells[row * columns..][..columns].iter().enumerate() {
+                    let first = (((begin - low) << 64).div_ceil(width)) as u64;
+                    for second in [first.wrapping_sub(1), first] {
+                        let at = low + ((u128::from(second) * width) >> 64);
+                        let inside = |(low, part): &(u128, u128)| at.wrapping_sub(*low) < *part;
+                        let (found, probability, rest) = shares.column_of(1, row, share, second);
+                        let expected = cells[row * columns..][..columns].iter().position(inside);
+                        assert_eq!(Some(found), expected, "{rows} x {columns}: {row} {column} {second}");
+                        let of_row = cells[row * columns + found].1 as f64 / width as f64;
+                        assert!((probability / of_row - 1.0).abs() < 1e-15 && (0.0..1.0).contains(&rest));
+                        assert!(*part == 0 || second != first || rest * *part as f64 <= 1.0, "{rest}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_cell_or_none_has_all_fractions() {
+        let mut fluxes = vec![0.0; 12];
+        for lit in [None, Some(0), Some(5), Some(11)] {
+            fluxes.fill(0.0);
+            lit.into_iter().for_each(|k: usize| fluxes[k] = 2.0);
+            let shares = shares(4, 3, &fluxes);
+            assert!(shares.is_single(1) && !shares.is_single(0));
+            let cell = lit.unwrap_or(0);
+            for bits in [0, 5 << 60, u64::MAX] {
+                let mut u = Reusable::fresh(bits);
+                assert_eq!((shares.choose(1, &mut u), u.bits()), ([cell / 3, cell % 3], bits));
+                let (row, share) = shares.row_of(1, bits);
+                assert_eq!((row, share), (cell / 3, Share::ALL));
+                assert_eq!(shares.column_of(1, row, share, bits), (cell % 3, 1.0, to_unit_f64(bits)));
+            }
+        }
+    }
+}

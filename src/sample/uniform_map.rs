@@ -1,8 +1,8 @@
 //! The emission of references: directions uniform in solid angle, weighted.
 
+use super::cell::GridPoint;
 use super::choose::Reusable;
 use super::coordinates::{Chooser, Purpose};
-use super::cell::GridPoint;
 use super::discrete::Discrete;
 use super::grid::Grid;
 use super::rejection::uniform_in_cell;
@@ -67,9 +67,15 @@ mod tests {
         }
         let sum: f64 = shares.iter().flatten().sum();
         assert!((sum - 1.0).abs() < 1e-4, "{sum}");
+        let whole: f64 = grid.cells().map(|(cell, _, column)| cell.flux(column)).sum();
+        let part = |i: usize, j: usize| {
+            let mut cells = grid.cells();
+            let cell = cells.find(|(_, row, column)| (row.theta, column.phi) == (polar[i], azimuth[j]));
+            cell.map_or(0.0, |(cell, _, column)| cell.flux(column) / whole)
+        };
         for (i, row) in shares.iter().enumerate() {
             for (j, share) in row.iter().enumerate() {
-                assert!((share - grid.cell_probability(i, j)).abs() < 1e-4, "{i} {j}: {share}");
+                assert!((share - part(i, j)).abs() < 1e-4, "{i} {j}: {share}");
             }
         }
         assert_eq!(shares[0][0], 0.0);

@@ -54,7 +54,7 @@ pub(crate) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> 
         let most = excesses_most(layers, face);
         if most > ONE {
             for k in face.layers.into_iter().flatten() {
-                (0..layers[k].grids.len()).for_each(|slice| layers[k].grids.scale(slice, 1.0 / most));
+                (0..layers[k].grids.count()).for_each(|slice| layers[k].grids.scale(slice, 1.0 / most));
             }
         }
     }
