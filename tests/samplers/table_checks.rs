@@ -293,9 +293,10 @@ fn branches(surface: &Surface, wi: DVec3) -> Vec<Branch<'_>> {
     all.into_iter().map(|(lobe, table, weight)| Branch { lobe, table, events: part(weight) }).collect()
 }
 
-/// Coordinates of a photon.
-fn coordinates(i: u64) -> [u64; 3] {
-    [0, 1, 2].map(|k| mix64(4 * i + k))
+/// Coordinates of a photon, of eight seven that are scattered.
+fn coordinates(i: u64, albedo: f64) -> [u64; 3] {
+    let [event, u1, u2] = [0, 1, 2].map(|k| mix64(4 * i + k));
+    [if i % 8 == 0 { event } else { fraction(albedo.min(1.0) * to_unit_f64(event)) }, u1, u2]
 }
 
 /// The coordinates of a photon follow from where it went: whether it was scattered and by which slice from the event, two more by
@@ -304,7 +305,7 @@ pub fn coordinates_come_back(surface: &Surface, wi: DVec3, n: u64) -> usize {
     let name = &surface.name;
     let (branches, albedo) = (branches(surface, wi), luminance(surface.albedo(wi)));
     let mut checked = 0;
-    for u in (0..n).map(coordinates) {
+    for u in (0..n).map(|i| coordinates(i, albedo)) {
         let event = to_unit_f64(u[0]);
         let at_an_edge = |edge: f64| (event - edge).abs() < 1e-6;
         if at_an_edge(albedo) || branches.iter().any(|b| at_an_edge(b.events[0])) {
@@ -359,9 +360,9 @@ fn inverse_jacobian(surface: &Surface, wi: DVec3, branch: &Branch<'_>, [v1, v2]:
 /// The inverse Jacobians of all branches at a direction, each by its part of the events, add up to g there. Returns how many
 /// points were checked, and how many of them several branches reach.
 pub fn jacobians_add_up(surface: &Surface, wi: DVec3, n: u64) -> (usize, usize) {
-    let branches = branches(surface, wi);
+    let (branches, albedo) = (branches(surface, wi), luminance(surface.albedo(wi)));
     let (mut checked, mut several) = (0, 0);
-    for u in (0..n).map(|i| coordinates(!i)) {
+    for u in (0..n).map(|i| coordinates(1 << 32 | i, albedo)) {
         let Event::Leaves { direction: wo, through, .. } = surface.scatter_by(wi, u) else { continue };
         let quantity = if through { Quantity::Transmission } else { Quantity::Reflection };
         let reaching = branches.iter().filter(|b| b.lobe.quantity == quantity);
@@ -385,7 +386,7 @@ pub fn jacobians_add_up(surface: &Surface, wi: DVec3, n: u64) -> (usize, usize) 
 /// The part of the light scattered in n tries that ends below the horizon.
 pub fn below_horizon(surface: &Surface, wi: DVec3, n: u64) -> f64 {
     let (mut lost, mut all) = (0.0, 0.0);
-    for u in (0..n).map(coordinates) {
+    for u in (0..n).map(|i| coordinates(i, luminance(surface.albedo(wi)))) {
         let event = surface.scatter_by(wi, u);
         lost += f64::from(u8::from(matches!(event, Event::BelowHorizon)));
         all += f64::from(u8::from(!matches!(event, Event::Absorbed)));

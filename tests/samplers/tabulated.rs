@@ -186,7 +186,7 @@ fn samples_follow_the_density() {
 fn the_coordinates_of_a_photon_come_back() {
     for surface in surfaces() {
         let checked: usize =
-            incidences().into_iter().map(|wi| coordinates_come_back(&surface, wi, 4000)).sum();
+            incidences().into_iter().map(|wi| coordinates_come_back(&surface, wi, 1000)).sum();
         println!("{:<24} {checked} photons", surface.name);
         assert!(checked >= 5000, "{}: {checked}", surface.name);
     }
@@ -197,7 +197,7 @@ fn the_jacobians_of_all_branches_add_up_to_the_density() {
     for surface in surfaces() {
         let (mut checked, mut several) = (0, 0);
         for wi in incidences() {
-            let (some, of_several) = jacobians_add_up(&surface, wi, 1000);
+            let (some, of_several) = jacobians_add_up(&surface, wi, 300);
             checked += some;
             several += of_several;
         }

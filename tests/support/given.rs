@@ -12,17 +12,21 @@ use caustix::sample::method::Sampling;
 /// drawn; and however little is left of a coordinate, it serves.
 #[derive(Debug, Clone)]
 pub struct Script {
-    pub event: Reusable,
+    event: Reusable,
     /// The last one comes first.
     rest: Vec<u64>,
-    pub reuse: bool,
-    pub solver: Solver,
+    reuse: bool,
 }
 
 impl Script {
     pub fn new(event: u64, coordinates: &[u64]) -> Self {
         let rest = coordinates.iter().rev().copied().collect();
-        Self { event: Reusable::fresh(event), rest, reuse: true, solver: Solver::DEFAULT }
+        Self { event: Reusable::fresh(event), rest, reuse: true }
+    }
+
+    /// The same where a coordinate does not go on after a choice.
+    pub fn without_reuse(self) -> Self {
+        Self { reuse: false, ..self }
     }
 }
 
@@ -56,10 +60,6 @@ impl Chooser for Script {
 
     fn left(&mut self, left: f64, _: f64, _: Purpose) -> f64 {
         left
-    }
-
-    fn sampling(&self) -> Sampling {
-        Sampling::Inverse(self.solver)
     }
 }
 
