@@ -160,7 +160,8 @@ fn check_invert(path: &Path) {
         checked += 1;
     }
     println!("{}: {checked} points, worst |du1| {:.1e}, |du2| {:.1e}", path.display(), worst[0], worst[1]);
-    assert!(worst[0] < 2e-14 && worst[1] < 1e-12, "{}: {worst:?}", path.display());
+    // The sum of the cells' fluxes, which shares out u1, is rounded once a cell.
+    assert!(worst[0] < 1e-13 && worst[1] < 1e-12, "{}: {worst:?}", path.display());
 }
 
 #[test]
