@@ -16,7 +16,7 @@ use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
 use caustix::surface::tabulated::{Energy, Options};
 use caustix::surface::{
-    Event, Grey, Incidence, Material, Reflectance, Rgb, Tabulated, Throughput as Carried,
+    Event, Grey, Incidence, Lambertian, Material, Reflectance, Rgb, Tabulated, Throughput as Carried,
 };
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
@@ -99,7 +99,7 @@ fn batches() -> Vec<Batch> {
     }
     let grey = table(1, Frame::Specular, vec![0.0]);
     let grid = luminaire(&grey);
-    let lambertian = Material::Lambertian { reflectance: Reflectance::grey(1.0) };
+    let lambertian = Material::Lambertian(Lambertian::new(Reflectance::new(1.0).unwrap()));
     let turn = steps(0.0, 360.0, 10.0);
     vec![
         ("emission of the same grid", Box::new(move |first| emit(&grid, first))),
@@ -179,7 +179,7 @@ fn measured(group: &mut BenchmarkGroup<'_, WallTime>, path: &Path) {
         (Tabulated::new(&table, &options).unwrap().0, values)
     };
     let (tabulated, values) = both();
-    let bytes = tabulated.memory_bytes();
+    let bytes = caustix::surface::memory_bytes(&[Material::Tabulated(Box::new(tabulated))]);
     println!(
         "{}: {values} values, {bytes} bytes, {:.2} a value",
         path.display(),

@@ -320,7 +320,7 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
             let mirrored = DVec3::new(-wi.x, -wi.y, wi.z);
             // A photon that red walls have met: the weights are what reflect() leaves, luminance 1.
             let mut red = Rgb::WHITE;
-            let wall = caustix::surface::Reflectance::rgb([0.9, 0.3, 0.0]);
+            let wall = caustix::surface::Reflectance::rgb([0.9, 0.3, 0.0]).unwrap();
             let some = IndependentPoints::new(0, 0);
             assert!((0..99).any(|i| red.reflect(&wall, &mut Coordinates::new(&some, i, true))));
             for (k, start) in [Rgb::WHITE, red].into_iter().enumerate() {

@@ -99,6 +99,6 @@ fn a_merl_file_holds() {
     let table = caustix::files::bsdf::parse(&bytes, "lobe.binary").unwrap();
     assert!(table.warnings.iter().any(|w| w.found().contains("not measured")), "{:?}", table.warnings);
     let surfaces = sides("lobe.binary", &table);
-    assert!(surfaces.len() == 1 && surfaces[0].sampler.is_coloured());
+    assert!(surfaces.len() == 1 && caustix::surface::Model::is_coloured(&surfaces[0].sampler));
     check(&surfaces);
 }

@@ -1,8 +1,7 @@
 //! Tabulated surfaces in a local frame: z the normal on the side that light comes from, x the reference direction.
 
 use caustix::scattering::Quantity;
-use caustix::surface::value::Leg;
-use caustix::surface::{Incidence, Tabulated};
+use caustix::surface::{Incidence, Leg, Model, Tabulated};
 use glam::DVec3;
 
 /// The outward normal, and light from wi on that side of it.

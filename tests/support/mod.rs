@@ -11,6 +11,7 @@ pub mod density;
 pub mod given;
 pub mod judge;
 pub mod local;
+pub mod maps;
 pub mod pictures;
 pub mod quadrature;
 pub mod random;

@@ -81,16 +81,6 @@ impl<const C: usize> PhotonStore<C> {
         self.most = most;
     }
 
-    /// Photons in it.
-    pub fn len(&self) -> usize {
-        self.kept.load(Ordering::Relaxed)
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
     /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair sample and is
     /// dropped.
     pub fn take(&mut self) -> Option<Kept<C>> {

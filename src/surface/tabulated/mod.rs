@@ -20,9 +20,9 @@
 mod arrival;
 mod branch;
 mod energy;
-mod eval;
 mod face;
 mod layer;
+mod model;
 mod options;
 mod scatter;
 
@@ -32,8 +32,7 @@ use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::scattering::ScatterTable;
-use crate::surface::{Incidence, Reference};
-use crate::units::LUMINANCE_OF_RGB;
+use crate::surface::Reference;
 
 use arrival::Arrival;
 use branch::Lobes;
@@ -79,21 +78,6 @@ impl Tabulated {
         Ok(Self { reference: reference.normalised()?, ..self.clone() })
     }
 
-    /// Whether it treats channels differently.
-    pub fn is_coloured(&self) -> bool {
-        self.faces.iter().any(|face| face.coloured)
-    }
-
-    /// Bytes held by the tables, which copies share.
-    pub fn memory_bytes(&self) -> usize {
-        self.layers.iter().map(|layer| layer.grids.memory_bytes()).sum()
-    }
-
-    /// Whether both are copies of one surface, which share its table.
-    pub fn shares_table_with(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.layers, &other.layers)
-    }
-
     fn face(&self, from_front: bool) -> &Face {
         &self.faces[usize::from(!from_front)]
     }
@@ -123,14 +107,5 @@ impl Tabulated {
     fn mixed<'a>(&'a self, face: &Face, arrival: &'a Arrival, (theta, phi): (f64, f64)) -> Lobes<'a> {
         let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
         Lobes { arrival, lobes: face.layers.map(layer) }
-    }
-
-    /// What a photon of white light at a surface costs by rejection, on average over whether it is scattered: proposals (inside
-    /// a cell, against a slice's largest value).
-    pub fn proposals(&self, at: &Incidence) -> (f64, f64) {
-        let face = self.face(at.front);
-        let along = || self.along(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, along);
-        self.lobes(face, &arrival, along).proposals(LUMINANCE_OF_RGB)
     }
 }

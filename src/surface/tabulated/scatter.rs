@@ -2,7 +2,7 @@
 
 use crate::sample::coordinates::Chooser;
 use crate::scattering::Quantity;
-use crate::surface::reflectance::luminance;
+use crate::surface::luminance;
 use crate::surface::tabulated::Tabulated;
 use crate::surface::tabulated::arrival::Arrival;
 use crate::surface::tabulated::branch::{Branches, Left, leave};
@@ -45,7 +45,7 @@ impl Tabulated {
         let albedo = branches.add_grey(layers, theta, phi);
         let fate = if face.rest.is_some() {
             carried.scatter([albedo; 3], true, chooser)
-        } else if carried.reflect(&Reflectance::grey(albedo), chooser) {
+        } else if carried.reflect(&Reflectance::of_table(albedo), chooser) {
             Fate::Scattered(LUMINANCE_OF_RGB)
         } else {
             Fate::Ends
