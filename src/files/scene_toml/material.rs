@@ -5,10 +5,14 @@ use crate::files::scene_toml::description::{MaterialDescription, MaterialKind, T
 use crate::files::scene_toml::toml_table::{Interval, Table};
 use crate::files::scene_toml::{ANGLE, direction};
 use crate::surface::tabulated::{Energy, Sides};
-use crate::surface::{Dielectric, Lambertian, Material, Mirror, Reflectance, dielectric, reflectance};
+use crate::surface::{
+    Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reflectance, dielectric,
+    diffuse_transmission, reflectance,
+};
 
 const IOR: Interval = interval(dielectric::RANGE, dielectric::REQUIRED);
 const REFLECTANCE: Interval = interval(reflectance::RANGE, reflectance::REQUIRED);
+const TRANSMITTANCE: Interval = interval(reflectance::RANGE, diffuse_transmission::REQUIRED);
 
 const fn interval([low, high]: [f64; 2], words: &'static str) -> Interval {
     Interval { low, high, words }
@@ -75,8 +79,13 @@ fn read_lambertian(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
     table.call("a lambertian material");
     let reflectance = parts(table, "reflectance", &REFLECTANCE);
     let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
-    let reflectance = guarded(table, Reflectance::rgb(reflectance?))?;
-    Some(Material::Lambertian(Lambertian::new(reflectance)).into())
+    let transmittance = parts(table, "transmittance", &TRANSMITTANCE).unwrap_or([0.0; 3]);
+    if transmittance == [0.0; 3] {
+        let reflectance = guarded(table, Reflectance::rgb(reflectance?))?;
+        return Some(Material::Lambertian(Lambertian::new(reflectance)).into());
+    }
+    let sheet = guarded(table, DiffuseTransmission::new(reflectance?, transmittance))?;
+    Some(Material::DiffuseTransmission(sheet).into())
 }
 
 fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
