@@ -1,6 +1,7 @@
 //! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of arrival.
 //!
-//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`.
+//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`. With a `transmittance` it is
+//! [`crate::surface::DiffuseTransmission`].
 
 use std::f64::consts::{FRAC_1_PI, PI};
 

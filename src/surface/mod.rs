@@ -16,6 +16,7 @@
 
 mod absorber;
 pub mod dielectric;
+pub mod diffuse_transmission;
 pub mod eye;
 pub mod incidence;
 pub mod lambertian;
@@ -34,6 +35,7 @@ use glam::DVec3;
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use diffuse_transmission::DiffuseTransmission;
 pub use eye::EyeWeight;
 pub use incidence::{Incidence, Leg};
 pub use lambertian::Lambertian;
@@ -52,6 +54,8 @@ pub enum Material {
     Mirror(Mirror),
     /// Perfectly diffuse on the side of arrival.
     Lambertian(Lambertian),
+    /// A thin sheet, perfectly diffuse on both sides.
+    DiffuseTransmission(DiffuseTransmission),
     /// Scatters as a table says.
     Tabulated(Box<Tabulated>),
     /// Ends every photon.
@@ -65,6 +69,7 @@ macro_rules! ask {
             Material::Dielectric(model) => Model::$question(model, $($argument),*),
             Material::Mirror(model) => Model::$question(model, $($argument),*),
             Material::Lambertian(model) => Model::$question(model, $($argument),*),
+            Material::DiffuseTransmission(model) => Model::$question(model, $($argument),*),
             Material::Tabulated(model) => Model::$question(&**model, $($argument),*),
             Material::Absorber => Model::$question(&absorber::Absorber, $($argument),*),
         }
@@ -72,8 +77,8 @@ macro_rules! ask {
 }
 
 /// All that [`Material::requires`] answers, in the order of reports.
-pub const REQUIREMENTS: [&str; 4] =
-    ["refraction", "mirror reflection", "diffuse scattering", "tabulated scattering"];
+pub const REQUIREMENTS: [&str; 5] =
+    ["refraction", "mirror reflection", "diffuse scattering", "diffuse transmission", "tabulated scattering"];
 
 /// What became of a photon at a surface.
 #[derive(Debug, Clone, Copy)]

@@ -62,10 +62,8 @@ impl Sink for Watch<'_> {
             Material::Mirror(_) => &mut seen.mirror,
             Material::Lambertian(wall) if wall.reflectance().luminous() == 1.0 => &mut seen.white,
             Material::Lambertian(_) => &mut seen.lambertian,
-            Material::Tabulated(_) => {
-                unreachable!("no table in these scenes")
-            }
             Material::Absorber => &mut seen.absorber,
+            other => unreachable!("no {other:?} in these scenes"),
         };
         *count += 1;
     }

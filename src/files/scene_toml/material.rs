@@ -13,11 +13,13 @@ use crate::geometry::{ANGLE, Shape};
 use crate::math::frame::unit;
 use crate::surface::tabulated::{Energy, Options, Sides};
 use crate::surface::{
-    Dielectric, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated, dielectric, reflectance,
+    Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated,
+    dielectric, diffuse_transmission, reflectance,
 };
 
 const IOR: Interval = interval(dielectric::RANGE, dielectric::REQUIRED);
 const REFLECTANCE: Interval = interval(reflectance::RANGE, reflectance::REQUIRED);
+const TRANSMITTANCE: Interval = interval(reflectance::RANGE, diffuse_transmission::REQUIRED);
 
 const fn interval([low, high]: [f64; 2], words: &'static str) -> Interval {
     Interval { low, high, words }
@@ -66,10 +68,16 @@ fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
 
 fn read_lambertian(table: &mut Table<'_, '_>) -> Option<Material> {
     table.call("a lambertian material");
-    let rgb = table.number_or_vector("reflectance", &REFLECTANCE);
-    let rgb = table.require("reflectance", rgb, REFLECTANCE.words)?;
-    let reflectance = table.accept(Reflectance::rgb(rgb.to_array()))?;
-    Some(Material::Lambertian(Lambertian::new(reflectance)))
+    let reflectance = table.number_or_vector("reflectance", &REFLECTANCE);
+    let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+    let transmittance = table.number_or_vector("transmittance", &TRANSMITTANCE).unwrap_or(DVec3::ZERO);
+    let reflectance = reflectance?.to_array();
+    if transmittance == DVec3::ZERO {
+        let reflectance = table.accept(Reflectance::rgb(reflectance))?;
+        return Some(Material::Lambertian(Lambertian::new(reflectance)));
+    }
+    let sheet = table.accept(DiffuseTransmission::new(reflectance, transmittance.to_array()))?;
+    Some(Material::DiffuseTransmission(sheet))
 }
 
 fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Material> {
