@@ -66,8 +66,10 @@ mod rooms {
     pub mod picture;
     pub mod lab;
     pub mod files;
-    pub mod plot;
     pub mod report;
+    #[cfg(feature = "plots")]
+    pub mod plot;
+    #[cfg(feature = "cli")]
     pub mod cli;
 }
 
@@ -103,5 +105,6 @@ pub use transport::{Census, Ledger};
 pub use picture::{AnyPicture, Picture, PictureSummary, Watch, trace_picture};
 
 /// The command `caustix`, with the arguments of the process.
+#[cfg(feature = "cli")]
 #[doc(hidden)]
 pub use cli::main as command;

@@ -4,13 +4,16 @@ use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
+use crate::files::exr::Value;
 use crate::files::scene_toml::source::read_capped;
 use crate::picture;
+use crate::picture::camera::Film;
 use crate::picture::photon_map::SavedMap;
 use crate::picture::photon_map::file::channels;
 use crate::picture::{AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved};
+use crate::plot::picture::{write_luminance_png, write_png};
 use crate::report::camera::CameraReport;
-use crate::report::picture::{camera_attributes, write_camera};
+use crate::report::picture::{camera_attributes, write_exr};
 use crate::run::Plan;
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
@@ -37,22 +40,14 @@ pub(super) fn check(args: &RenderArgs, scene: &Scene) -> Result<()> {
             "a scene with a camera: photons are kept for it alone",
         ));
     };
-    let splat = spec.method == Method::Splat;
-    if splat && args.map.is_some() {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            "--map and method \"splat\"",
-            "method = \"map\": splatting joins photons to the pinhole while they are traced",
-        ));
-    }
-    if splat && args.save_map.is_some() {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            "--save-map and method \"splat\"",
-            "method = \"map\": splatting keeps no photons",
-        ));
-    }
-    picture::check(scene)
+    let (option, required) = match (spec.method, &args.map, &args.save_map) {
+        (Method::Splat, Some(_), _) => {
+            ("--map", "method = \"map\": splatting joins photons to the pinhole while they are traced")
+        }
+        (Method::Splat, None, Some(_)) => ("--save-map", "method = \"map\": splatting keeps no photons"),
+        _ => return picture::check(scene),
+    };
+    Err(Diagnostic::new(Kind::Range, format!("{option} and method \"splat\""), required))
 }
 
 /// Photons from a file, in one channel or three.
@@ -132,7 +127,7 @@ fn save_map<const C: usize>(
 /// Writes the camera's files into a directory that exists, and says what they are.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A file that cannot be written; files written before it stay.
 pub(super) fn write(
     directory: &Path,
     scene: &Scene,
@@ -143,8 +138,25 @@ pub(super) fn write(
     let summary = picture.summary();
     let attributes = camera_attributes(scene, plan, summary.photons, summary.replicates, spec);
     let files = match picture {
-        AnyPicture::Grey(picture) => write_camera(directory, "camera", spec, &picture.film, &attributes)?,
-        AnyPicture::Rgb(picture) => write_camera(directory, "camera", spec, &picture.film, &attributes)?,
+        AnyPicture::Grey(picture) => write_film(directory, spec, &picture.film, &attributes)?,
+        AnyPicture::Rgb(picture) => write_film(directory, spec, &picture.film, &attributes)?,
     };
     Ok(CameraReport::new(spec, summary, &files))
+}
+
+fn write_film<const C: usize>(
+    directory: &Path,
+    spec: &CameraSpec,
+    film: &Film<C>,
+    attributes: &[(String, Value)],
+) -> Result<Vec<String>> {
+    let mut files = vec!["camera.exr".to_string(), "camera.png".to_string()];
+    write_exr(&directory.join(&files[0]), spec, film, attributes)?;
+    write_png(&directory.join(&files[1]), spec, film)?;
+    if spec.false_colour {
+        let file = "camera_luminance.png".to_string();
+        write_luminance_png(&directory.join(&file), "camera", spec, film)?;
+        files.push(file);
+    }
+    Ok(files)
 }

@@ -9,5 +9,6 @@ pub mod lm63;
 pub mod obj;
 mod obj_text;
 pub mod parts;
+#[cfg(feature = "plots")]
 pub mod png;
 pub mod scene_toml;

@@ -3,9 +3,12 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::error::Result;
-use crate::files::atomic::write_atomically;
-use crate::plot::canvas::{Anchor, Canvas, Colour, TextStyle, arc_points, dashes};
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::atomic::write_bytes;
+use crate::report::colour::Colour;
+
+use super::canvas::{Anchor, Canvas, TextStyle};
+use super::chain::{arc_points, dashes};
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +19,28 @@ pub struct Pen {
     pub colour: Colour,
     /// Ink and gap in pixels; none for a solid line.
     pub dash_px: Option<[f64; 2]>,
+}
+
+impl Pen {
+    /// A solid line.
+    pub fn solid(width_px: f64, colour: Colour) -> Self {
+        Self { width_px, colour, dash_px: None }
+    }
+}
+
+/// The colour of text and marks.
+pub fn ink() -> Colour {
+    Colour::grey(50)
+}
+
+/// Upright text whose anchor, on the baseline, is here.
+pub fn text(at: [f64; 2], text: &str, style: TextStyle) -> Shape {
+    Shape::Text { at, text: text.to_owned(), style }
+}
+
+/// A chain of lines.
+pub fn polyline(points: impl Into<Vec<[f64; 2]>>, pen: Pen) -> Shape {
+    Shape::Polyline { points: points.into(), pen }
 }
 
 /// One shape; coordinates in pixels, x right and y down.
@@ -108,12 +133,18 @@ impl Drawing {
         svg
     }
 
-    /// Writes the SVG file.
+    /// Writes the drawing; the ending of the name says as what.
     ///
     /// # Errors
-    /// [`crate::error::Kind::Io`] with the path.
-    pub fn write_svg(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_atomically(path, |writer| std::io::Write::write_all(writer, self.to_svg().as_bytes()))
+    /// [`Kind::Range`] for an ending other than `.svg` and `.png`; [`Kind::Io`] with the path.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        match path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).as_deref() {
+            Some("svg") => write_bytes(path, self.to_svg().as_bytes()),
+            Some("png") => self.to_canvas().write_png(path),
+            _ => {
+                Err(Diagnostic::new(Kind::Range, path.display().to_string(), "a name ending in .svg or .png"))
+            }
+        }
     }
 }
 
@@ -267,10 +298,26 @@ mod tests {
         ] {
             assert!(svg.contains(part), "{part} is not in {svg}");
         }
-        let canvas = drawing.to_canvas();
-        assert_eq!(canvas.pixel(5, 5).to_srgb(), [0, 0, 0]);
-        assert_eq!(canvas.pixel(25, 20).to_srgb(), [200, 0, 0]);
-        assert_eq!(canvas.pixel(50, 5).to_srgb(), [0, 0, 200]);
-        assert_eq!(canvas.pixel(30, 29).to_srgb(), [200, 0, 0]);
+        let bytes = drawing.to_canvas().to_srgb_bytes();
+        let pixel = |x: usize, y: usize| bytes[3 * (60 * y + x)..][..3].to_vec();
+        assert_eq!(pixel(5, 5), [0, 0, 0]);
+        assert_eq!(pixel(25, 20), [200, 0, 0]);
+        assert_eq!(pixel(50, 5), [0, 0, 200]);
+        assert_eq!(pixel(30, 29), [200, 0, 0]);
+    }
+
+    #[test]
+    fn the_ending_of_a_name_says_what_is_written() {
+        let directory = tempfile::tempdir().unwrap();
+        let drawing = Drawing { width: 8, height: 6, shapes: vec![] };
+        for (name, first) in [("a.svg", &b"<svg "[..]), ("b.PNG", &b"\x89PNG"[..])] {
+            drawing.write(&directory.path().join(name)).unwrap();
+            assert!(std::fs::read(directory.path().join(name)).unwrap().starts_with(first), "{name}");
+        }
+        for name in ["c.jpg", "d"] {
+            let path = directory.path().join(name);
+            assert_eq!(drawing.write(&path).unwrap_err().kind(), Kind::Range);
+            assert!(!path.exists());
+        }
     }
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::picture::{Chosen, PictureSummary};
 use crate::scene::camera::CameraSpec;
 
-use super::text::{grouped, rounded};
+use super::numbers::{grouped, rounded, written};
 
 /// The camera of report.json. Names are a contract: they are only added to.
 #[derive(Debug, Clone, Serialize)]
@@ -75,10 +75,7 @@ impl CameraReport {
 
     /// The same in words, for the printed summary.
     pub fn text(&self) -> String {
-        let mut out = String::new();
-        // Writing to a String cannot fail.
-        let _infallible = self.write(&mut out);
-        out
+        written(|out| self.write(out))
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {

@@ -358,10 +358,6 @@ fn a_study_in_small() {
         assert!(text.contains(name) && markdown.contains(name));
     }
     assert!(text.lines().all(|l| l.chars().count() <= 110), "{text}");
-    let folder = tempfile::tempdir().unwrap();
-    let (written, errors) = report::write_files(&found, "caustix compare room.toml", folder.path());
-    assert!(errors.is_empty() && written.len() == 3);
-    assert_eq!(std::fs::read_to_string(folder.path().join("compare.csv")).unwrap(), csv);
 }
 
 #[test]

@@ -19,7 +19,7 @@
 
 mod arrival;
 mod branch;
-mod energy;
+pub(crate) mod energy;
 mod eye;
 mod layer;
 
