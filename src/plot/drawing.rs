@@ -1,6 +1,6 @@
 //! A drawing as a list of shapes, rendered alike to SVG and to pixels.
 
-use std::fmt::Write as _;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
@@ -127,7 +127,8 @@ impl Drawing {
              <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
         );
         for shape in &self.shapes {
-            write_shape(&mut svg, shape);
+            svg += &svg_of(shape);
+            svg.push('\n');
         }
         svg.push_str("</svg>\n");
         svg
@@ -159,36 +160,27 @@ fn draw_chain(canvas: &mut Canvas, points: &[[f64; 2]], pen: &Pen) {
     }
 }
 
-/// Writing to a `String` cannot fail, so its results are not looked at.
-fn write_shape(svg: &mut String, shape: &Shape) {
+fn svg_of(shape: &Shape) -> String {
     match shape {
-        Shape::Polyline { points, pen } => {
-            write!(svg, "<polyline points=\"{}\" {}/>", list(points), stroke(pen)).ok();
-        }
+        Shape::Polyline { points, pen } => format!("<polyline points=\"{}\" {}/>", list(points), stroke(pen)),
         Shape::Arc { centre: [x, y], radius, angles: [from, to], pen } => {
-            if (to - from).abs() >= std::f64::consts::TAU * (1.0 - 1e-9) {
-                let (x, y, r) = (number(*x), number(*y), number(*radius));
-                write!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>", stroke(pen)).ok();
-            } else {
-                let end = |a: f64| {
-                    format!("{} {}", number(x + radius * libm::cos(a)), number(y + radius * libm::sin(a)))
-                };
-                let large = u8::from((to - from).abs() > std::f64::consts::PI);
-                let sweep = u8::from(to > from);
-                let (r, start, stop) = (number(*radius), end(*from), end(*to));
-                write!(svg, "<path d=\"M {start} A {r} {r} 0 {large} {sweep} {stop}\" {}/>", stroke(pen))
-                    .ok();
+            let (r, stroke) = (number(*radius), stroke(pen));
+            if (to - from).abs() >= TAU * (1.0 - 1e-9) {
+                return format!("<circle cx=\"{}\" cy=\"{}\" r=\"{r}\" {stroke}/>", number(*x), number(*y));
             }
+            let end = |a: f64| {
+                format!("{} {}", number(x + radius * libm::cos(a)), number(y + radius * libm::sin(a)))
+            };
+            let (large, sweep) = (u8::from((to - from).abs() > PI), u8::from(to > from));
+            format!("<path d=\"M {} A {r} {r} 0 {large} {sweep} {}\" {stroke}/>", end(*from), end(*to))
         }
         Shape::Rect { area, colour } => {
-            let [x, y, width, height] = area.map(number);
-            let fill = hex(*colour);
-            write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
-                .ok();
+            let ([x, y, width, height], fill) = (area.map(number), hex(*colour));
+            format!("<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
         }
         Shape::Polygon { corners, colour } => {
             let (points, fill) = (list(corners), hex(*colour));
-            write!(svg, "<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>").ok();
+            format!("<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>")
         }
         Shape::Text { at, text, style } => {
             let anchor = match style.anchor {
@@ -197,18 +189,14 @@ fn write_shape(svg: &mut String, shape: &Shape) {
                 Anchor::End => "end",
             };
             let weight = if style.weight > 1.1 { " font-weight=\"bold\"" } else { "" };
-            let (x, y) = (number(at[0]), number(at[1]));
-            let (size, fill) = (number(style.size_px), hex(style.colour));
-            let text = escaped(text);
-            write!(
-                svg,
+            let [x, y, size] = [at[0], at[1], style.size_px].map(number);
+            let (fill, text) = (hex(style.colour), escaped(text));
+            format!(
                 "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\"{weight} \
                  fill=\"{fill}\" xml:space=\"preserve\">{text}</text>"
             )
-            .ok();
         }
     }
-    svg.push('\n');
 }
 
 fn list(points: &[[f64; 2]]) -> String {

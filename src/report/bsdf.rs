@@ -323,20 +323,15 @@ fn energy(
     };
     let lobes: Vec<&LobeSummary> =
         table.lobes.iter().zip(summaries).filter(|(lobe, _)| concerned(lobe)).map(|(_, s)| s).collect();
-    let mut most: Option<EnergySummary> = None;
-    for phi in lobes.iter().flat_map(|l| &l.phi_i_deg) {
-        for theta in lobes.iter().flat_map(|l| &l.theta_i_deg) {
-            for channel in 0..3 {
-                let albedo: f64 = lobes.iter().map(|l| l.albedo(channel, *theta, *phi)).sum();
-                if most.as_ref().is_none_or(|m| albedo > m.max_albedo) {
-                    let (theta_i_deg, phi_i_deg, conserved) = (*theta, *phi, albedo <= ONE);
-                    most =
-                        Some(EnergySummary { side, max_albedo: albedo, theta_i_deg, phi_i_deg, conserved });
-                }
-            }
-        }
-    }
-    most
+    let at = |theta_i_deg: f64, phi_i_deg: f64, channel: usize| {
+        let max_albedo = lobes.iter().map(|l| l.albedo(channel, theta_i_deg, phi_i_deg)).sum();
+        EnergySummary { side, max_albedo, theta_i_deg, phi_i_deg, conserved: max_albedo <= ONE }
+    };
+    let thetas = || lobes.iter().flat_map(|l| &l.theta_i_deg);
+    let phis = lobes.iter().flat_map(|l| &l.phi_i_deg);
+    let incidences = phis.flat_map(|phi| thetas().map(|theta| (*theta, *phi)));
+    let all = incidences.flat_map(|(theta, phi)| [0, 1, 2].map(|channel| at(theta, phi, channel)));
+    all.reduce(|most, other| if other.max_albedo > most.max_albedo { other } else { most })
 }
 
 /// The least and the greatest; nothing of nothing.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::run::{Outcome, Plan, StoppedBy};
+use crate::run::{Estimate, Outcome, Plan, StoppedBy};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
 use crate::transport::census::Exceptions;
@@ -120,30 +120,34 @@ pub struct TimeReport {
     pub photons_per_s: f64,
 }
 
+/// Where photons ended.
+#[derive(Debug, Clone, Serialize)]
+pub struct Accounts<T> {
+    /// Absorbed by each surface.
+    pub absorbed: BTreeMap<String, T>,
+    /// Left the scene.
+    pub escaped: T,
+    /// Ended by the guard against endless walks.
+    pub killed: T,
+}
+
+impl<T> Accounts<T> {
+    fn new(scene: &Scene, absorbed: impl Fn(usize) -> T, escaped: T, killed: T) -> Self {
+        let surfaces = scene.geometry.surfaces().iter().enumerate();
+        Self { absorbed: surfaces.map(|(i, s)| (s.name.clone(), absorbed(i))).collect(), escaped, killed }
+    }
+}
+
 /// Flux by account, lm.
 #[derive(Debug, Clone, Serialize)]
 pub struct LedgerReport {
     /// Emitted.
     pub emitted: f64,
-    /// Absorbed by each surface.
-    pub absorbed: BTreeMap<String, f64>,
-    /// Left the scene.
-    pub escaped: f64,
-    /// Ended by the guard against endless walks.
-    pub killed: f64,
+    /// Where it ended.
+    #[serde(flatten)]
+    pub ended: Accounts<f64>,
     /// Standard errors of the accounts: surfaces by name, `escaped`, `killed`; absent for one replicate.
-    pub standard_error: Option<LedgerErrors>,
-}
-
-/// Standard errors by account, lm.
-#[derive(Debug, Clone, Serialize)]
-pub struct LedgerErrors {
-    /// Absorbed by each surface.
-    pub absorbed: BTreeMap<String, f64>,
-    /// Left the scene.
-    pub escaped: f64,
-    /// Ended by the guard.
-    pub killed: f64,
+    pub standard_error: Option<Accounts<f64>>,
 }
 
 /// Photons by account.
@@ -151,12 +155,9 @@ pub struct LedgerErrors {
 pub struct LedgerPhotons {
     /// Emitted, by emitter.
     pub emitted: BTreeMap<String, u64>,
-    /// Absorbed, by surface.
-    pub absorbed: BTreeMap<String, u64>,
-    /// Left the scene.
-    pub escaped: u64,
-    /// Ended by the guard.
-    pub killed: u64,
+    /// Where they ended.
+    #[serde(flatten)]
+    pub ended: Accounts<u64>,
 }
 
 /// Constructive dimension.
@@ -193,11 +194,11 @@ impl<'a> Report<'a> {
         files: &'a [Vec<String>],
         total_s: f64,
     ) -> Self {
-        let surfaces = scene.geometry.surfaces();
-        let by_surface = |f: &dyn Fn(usize) -> f64| -> BTreeMap<String, f64> {
-            surfaces.iter().enumerate().map(|(i, s)| (s.name.clone(), f(i))).collect()
+        let ledger = &outcome.ledger;
+        let lumens = |of: &dyn Fn(Estimate) -> f64| {
+            let absorbed = |i| of(outcome.absorbed_lm(i));
+            Accounts::new(scene, absorbed, of(outcome.escaped_lm()), of(outcome.killed_lm()))
         };
-        let error = |e: crate::run::Estimate| e.standard_error.unwrap_or(0.0);
         let photons = outcome.photons as f64;
         Self {
             run: RunReport::new(scene, &outcome.plan, outcome.photons),
@@ -210,30 +211,14 @@ impl<'a> Report<'a> {
                 photons_per_s: if outcome.trace_s > 0.0 { photons / outcome.trace_s } else { 0.0 },
             },
             ledger_lm: LedgerReport {
-                emitted: outcome.ledger.total_emitted() as f64 * outcome.photon_lm,
-                absorbed: by_surface(&|i| outcome.absorbed_lm(i).value),
-                escaped: outcome.escaped_lm().value,
-                killed: outcome.killed_lm().value,
-                standard_error: (outcome.replicates > 1).then(|| LedgerErrors {
-                    absorbed: by_surface(&|i| error(outcome.absorbed_lm(i))),
-                    escaped: error(outcome.escaped_lm()),
-                    killed: error(outcome.killed_lm()),
-                }),
+                emitted: ledger.total_emitted() as f64 * outcome.photon_lm,
+                ended: lumens(&|e| e.value),
+                standard_error: (outcome.replicates > 1)
+                    .then(|| lumens(&|e| e.standard_error.unwrap_or(0.0))),
             },
             ledger_photons: LedgerPhotons {
-                emitted: scene
-                    .emitter_names
-                    .iter()
-                    .cloned()
-                    .zip(outcome.ledger.emitted.iter().copied())
-                    .collect(),
-                absorbed: surfaces
-                    .iter()
-                    .map(|s| s.name.clone())
-                    .zip(outcome.ledger.absorbed.iter().copied())
-                    .collect(),
-                escaped: outcome.ledger.escaped,
-                killed: outcome.ledger.killed,
+                emitted: scene.emitter_names.iter().cloned().zip(ledger.emitted.iter().copied()).collect(),
+                ended: Accounts::new(scene, |i| ledger.absorbed[i], ledger.escaped, ledger.killed),
             },
             dimension: DimensionReport {
                 mean: outcome.census.dimension_mean(),

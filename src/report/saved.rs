@@ -42,7 +42,7 @@ impl SavedReport {
     /// The report of a picture of the photons in this file, which a run by this plan saved.
     pub fn new(scene: &Scene, plan: &Plan, map: &Path, camera: CameraReport, total_s: f64) -> Self {
         Self {
-            run: RunReport::new(scene, plan, camera.photons),
+            run: RunReport::new(scene, plan, camera.picture.photons),
             replicates: plan.replicates,
             map: map.display().to_string(),
             time: SavedTime { total_s },

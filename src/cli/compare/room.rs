@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts};
+use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
 use crate::cli::render::{make_directory, thread_pool};
 use crate::cli::{Done, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
@@ -86,7 +86,7 @@ fn measurement(scene: &Scene, task: &Task, parts: &Parts, progress: &Progress) -
         progress.add(task.photons);
         return Ok(kept);
     }
-    let measured = measure(scene, task, &INTERRUPTED, &|n| progress.add(n))?;
+    let measured = measure(scene, task, processor_time, &INTERRUPTED, &|n| progress.add(n))?;
     store_json(parts, "room", &key, &measured)?;
     Ok(measured)
 }

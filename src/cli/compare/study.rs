@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts};
+use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
 use crate::cli::render::{make_directory, thread_pool};
 use crate::cli::{Done, count, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
@@ -255,7 +255,7 @@ impl Job<'_> {
     /// for all of them.
     fn runs(&self, reference: &Reference, reference_key: &str) -> Result<Vec<Vec<Run>>> {
         let asked = &self.asked;
-        let measure = Measure { scene: self.scene, grids: &asked.grids, reference };
+        let measure = Measure { scene: self.scene, grids: &asked.grids, reference, clock: processor_time };
         let mut runs = vec![Vec::new(); asked.algorithms.len()];
         for (k, seed) in asked.seeds.iter().enumerate() {
             for (algorithm, runs_of) in asked.algorithms.iter().zip(&mut runs) {
