@@ -6,12 +6,13 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Duration;
 
-use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
 use caustix::files::lm63;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
 use caustix::sample::cell::{Cell, Row};
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::sobol::SobolPoints;
@@ -42,8 +43,9 @@ fn largest() -> Photometry {
 
 fn lamp(photometry: &Photometry) -> Emitters {
     let aim = DVec3::new(0.1, -0.2, -1.0);
-    let e = Photometric::new(photometry, DVec3::Z, aim, DVec3::Y, None).unwrap();
-    Emitters::new(vec![Emitter::Photometric(Box::new(e))]).unwrap()
+    let frame = AimFrame::new(aim, None).unwrap();
+    let e = Photometric::new(photometry, DVec3::Z, frame, None).unwrap();
+    Emitters::new(vec![Emitter::Photometric(e)]).unwrap()
 }
 
 fn emissions<P: Points>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, lamp: &Emitters, points: &P) {
@@ -52,7 +54,11 @@ fn emissions<P: Points>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, la
         b.iter(|| {
             let mut sum = DVec3::ZERO;
             for i in first..first + BATCH {
-                sum += lamp.emit(&mut Coordinates::new(points, i, true)).1.direction;
+                sum += lamp
+                    .emit(Sampling::default(), &mut Coordinates::new(points, i, true))
+                    .unwrap()
+                    .1
+                    .direction;
             }
             first = (first + BATCH) % (1 << 24);
             black_box(sum)

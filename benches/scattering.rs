@@ -16,7 +16,9 @@ use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::to_unit_f64;
 use caustix::surface::tabulated::{Energy, Options};
-use caustix::surface::{Bsdf, Grey, Incidence, Outcome, Reflectance, Rgb, Tabulated, Throughput as Carried};
+use caustix::surface::{
+    Event, Grey, Incidence, Lambertian, Material, Reflectance, Rgb, Tabulated, Throughput as Carried,
+};
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };
@@ -35,10 +37,10 @@ fn table(channels: usize, frame: Frame, phi_i: Vec<f64>) -> LobeData {
     })
 }
 
-fn built(data: LobeData) -> Bsdf {
+fn built(data: LobeData) -> Material {
     let table = ScatterTable::new("bench", vec![data], vec![]).unwrap();
     let options = Options { energy: Energy::Scale, ..Options::default() };
-    Bsdf::Tabulated(Box::new(Tabulated::new(&table, &options).unwrap().0))
+    Material::Tabulated(Box::new(Tabulated::new(&table, &options).unwrap().0))
 }
 
 fn short<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, WallTime> {
@@ -56,12 +58,12 @@ fn arriving(i: u64) -> Incidence {
 }
 
 /// One batch of scatterings from photon `first` on.
-fn scatter<T: Carried>(bsdf: &Bsdf, carried: T, first: u64) -> DVec3 {
+fn scatter<T: Carried>(bsdf: &Material, carried: T, first: u64) -> DVec3 {
     let points = OwenPoints::new(1, 0);
     let mut sum = DVec3::ZERO;
     for i in first..first + BATCH {
         let mut c = Coordinates::new(&points, i, true);
-        if let Outcome::Leaves { direction, .. } = bsdf.interact(&arriving(i), &mut c, &mut carried.clone()) {
+        if let Event::Leaves { direction, .. } = bsdf.scatter(&arriving(i), &mut c, &mut carried.clone()) {
             sum += direction;
         }
     }
@@ -96,12 +98,12 @@ type Batch = (&'static str, Box<dyn Fn(u64) -> DVec3>);
 
 /// The emission that is the measure, then everything that is measured by it.
 fn batches() -> Vec<Batch> {
-    fn of<T: Carried + 'static>(bsdf: Bsdf, carried: T) -> Box<dyn Fn(u64) -> DVec3> {
+    fn of<T: Carried + 'static>(bsdf: Material, carried: T) -> Box<dyn Fn(u64) -> DVec3> {
         Box::new(move |first| scatter(&bsdf, carried, first))
     }
     let grey = table(1, Frame::Specular, vec![0.0]);
     let grid = luminaire(&grey);
-    let lambertian = Bsdf::Lambertian { reflectance: Reflectance::grey(1.0) };
+    let lambertian = Material::Lambertian(Lambertian::new(Reflectance::new(1.0).unwrap()));
     let turn = steps(0.0, 360.0, 10.0);
     vec![
         ("emission of the same grid", Box::new(move |first| emit(&grid, first))),
@@ -181,7 +183,7 @@ fn measured(group: &mut BenchmarkGroup<'_, WallTime>, path: &Path) {
         (Tabulated::new(&table, &options).unwrap().0, values)
     };
     let (tabulated, values) = both();
-    let bytes = tabulated.memory_bytes();
+    let bytes = caustix::surface::memory_bytes(&[Material::Tabulated(Box::new(tabulated))]);
     println!(
         "{}: {values} values, {bytes} bytes, {:.2} a value",
         path.display(),

@@ -1,7 +1,7 @@
 //! `caustix bsdf`: what a scattering table holds, and whether it keeps to energy and reciprocity.
 
 use crate::files::bsdf::{Format, MAX_FILE_BYTES, parse};
-use crate::files::scene_toml::source::read_capped;
+use crate::files::bytes::read_capped;
 use crate::plot::bsdf::drawing;
 use crate::report::bsdf::BsdfSummary;
 use crate::report::json::json;

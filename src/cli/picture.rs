@@ -4,12 +4,12 @@ use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
+use crate::files::bytes::read_capped;
 use crate::files::exr::Value;
-use crate::files::scene_toml::source::read_capped;
+use crate::files::photon_map;
 use crate::picture;
 use crate::picture::camera::Film;
 use crate::picture::photon_map::SavedMap;
-use crate::picture::photon_map::file::channels;
 use crate::picture::{AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved};
 use crate::plot::picture::{write_luminance_png, write_png};
 use crate::report::camera::CameraReport;
@@ -64,25 +64,21 @@ pub(super) fn read(path: &Path, scene: &Scene, plan: &Plan) -> Result<AnyMap> {
     let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
     let hash = hash_of_photons(scene, plan);
     let in_file = |e: Diagnostic| e.in_file(path);
-    // Of the same scene, yet of another number of channels: the camera that the photons were traced for saw another background,
-    // in colour or not.
-    let saved = match (channels(&bytes).map_err(in_file)?, scene.is_coloured()) {
-        (3, true) => AnyMap::Rgb(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?),
-        (3, false) => {
-            let saved = SavedMap::<3>::from_bytes(&bytes, &hash).map_err(in_file)?;
-            AnyMap::Grey(saved.in_channels())
-        }
-        (_, true) => {
-            let saved = SavedMap::<1>::from_bytes(&bytes, &hash).map_err(in_file)?;
-            AnyMap::Rgb(saved.in_channels())
-        }
-        (_, false) => AnyMap::Grey(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?),
+    Ok(if scene.is_coloured() {
+        AnyMap::Rgb(in_channels(&bytes, &hash, scene).map_err(in_file)?)
+    } else {
+        AnyMap::Grey(in_channels(&bytes, &hash, scene).map_err(in_file)?)
+    })
+}
+
+/// The photons in a scene's channels. Those of the same scene may have others: the camera that they were traced for saw another
+/// background, in colour or not.
+fn in_channels<const C: usize>(bytes: &[u8], hash: &str, scene: &Scene) -> Result<SavedMap<C>> {
+    let saved = match photon_map::channels(bytes)? {
+        3 => photon_map::read::<3>(bytes, hash)?.in_channels(),
+        _ => photon_map::read::<1>(bytes, hash)?.in_channels(),
     };
-    match &saved {
-        AnyMap::Grey(map) => check_saved(scene, map),
-        AnyMap::Rgb(map) => check_saved(scene, map),
-    }
-    .map_err(in_file)?;
+    check_saved(scene, &saved)?;
     Ok(saved)
 }
 
@@ -114,7 +110,7 @@ fn save_map<const C: usize>(
     photons: Option<&SavedMap<C>>,
 ) -> Result<()> {
     match photons {
-        Some(map) => write_atomically(path, |out| map.to_writer(out)),
+        Some(map) => write_atomically(path, |out| photon_map::write(map, out)),
         None => Err(Diagnostic::new(
             Kind::Limit,
             format!("--save-map and {} photons, in {} passes", summary.photons_kept, summary.passes),

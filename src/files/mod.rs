@@ -4,11 +4,14 @@
 
 pub mod atomic;
 pub mod bsdf;
+pub mod bytes;
 pub mod exr;
+pub mod height_image;
 pub mod lm63;
 pub mod obj;
 mod obj_text;
 pub mod parts;
+pub mod photon_map;
 #[cfg(feature = "plots")]
 pub mod png;
 pub mod scene_toml;

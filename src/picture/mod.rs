@@ -17,17 +17,16 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::scene_toml::source::sha256_hex;
-use crate::files::scene_toml::without_camera::without_camera;
-use crate::picture::camera::splat::Splat;
-use crate::picture::camera::{Film, View};
-use crate::picture::photon_map::{Channels, SavedMap};
+use crate::math::digest::sha256_hex;
+use crate::run::{Outcome, Plan, trace_by};
 use crate::scene::Scene;
-use crate::scene::camera::{CameraSpec, Method};
+use crate::scene::camera::{Camera, Method};
 use crate::surface::{Grey, Rgb};
 
-use crate::run::{Outcome, Plan, trace_by};
-use passes::collector::Collector;
+use camera::splat::Splat;
+use camera::{Film, View, film};
+use passes::collector::{Collector, capacity};
+use photon_map::{Channels, SavedMap};
 pub use summary::{Chosen, PictureSummary};
 
 /// What a camera saw.
@@ -75,24 +74,21 @@ pub struct Watch<'a> {
 /// photons have another hash.
 pub fn hash_of_photons(scene: &Scene, plan: &Plan) -> String {
     let mut all = format!("{}\n{}\n", env!("CARGO_PKG_VERSION"), settings_of(plan));
-    for (path, sha256) in &scene.identity.files {
-        all += &format!("{sha256} {path}\n");
-    }
-    all += &without_camera(&scene.identity.text);
+    all += &scene.identity.light;
     sha256_hex(all.as_bytes())
 }
 
 /// The settings of a run in words.
 fn settings_of(plan: &Plan) -> String {
-    let algorithm = plan.algorithm;
+    let algorithm = plan.algorithm();
     let way = if algorithm.variant.rejects() { algorithm.rejection.name() } else { algorithm.solver.name() };
     format!(
         "{} {way} {} seed {} {} x {} photons",
         algorithm.variant.name(),
         algorithm.sequence.name(),
-        plan.seed,
-        plan.replicates,
-        plan.photons_per_replicate
+        plan.seed(),
+        plan.replicates(),
+        plan.photons_per_replicate()
     )
 }
 
@@ -100,38 +96,30 @@ fn settings_of(plan: &Plan) -> String {
 ///
 /// # Errors
 /// A scene without.
-fn camera_of(scene: &Scene) -> Result<&CameraSpec> {
+fn camera_of(scene: &Scene) -> Result<&Camera> {
     scene.camera.as_ref().ok_or_else(|| {
         Diagnostic::new(Kind::Missing, "a scene without a camera", "a scene with [camera] for a picture")
     })
 }
 
+/// Bytes that the picture of a camera takes while it is made, beside the photons: pixels and their sums.
+pub fn memory_bytes(camera: &Camera, is_coloured: bool) -> u64 {
+    match (camera.method, is_coloured) {
+        (Method::Map, false) => Film::<1>::memory_bytes(camera.pixels),
+        (Method::Map, true) => Film::<3>::memory_bytes(camera.pixels),
+        (Method::Splat, false) => Splat::<1>::memory_bytes(camera.pixels),
+        (Method::Splat, true) => Splat::<3>::memory_bytes(camera.pixels),
+    }
+}
+
 /// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene without one passes.
 ///
 /// # Errors
-/// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface); splatting through a lens: a splat meets a point.
+/// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface).
 pub fn check(scene: &Scene) -> Result<()> {
-    let Some(spec) = &scene.camera else { return Ok(()) };
-    let splats = spec.method == Method::Splat;
-    if scene.is_coloured() {
-        check_memory::<3>(spec.pixels, splats)?;
-    } else {
-        check_memory::<1>(spec.pixels, splats)?;
-    }
-    View::new(scene, spec, 0)?;
-    if spec.method == Method::Splat && spec.lens_radius_m > 0.0 {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            format!("method \"splat\" and lens_radius = {}", spec.lens_radius_m),
-            "a pinhole (lens_radius = 0) where photons are joined to it",
-        )
-        .hint("method = \"map\" sees through a lens"));
-    }
-    Ok(())
-}
-
-fn check_memory<const C: usize>(pixels: [u32; 2], splats: bool) -> Result<()> {
-    if splats { Splat::<C>::check_memory(pixels) } else { Film::<C>::check_memory(pixels) }
+    let Some(camera) = &scene.camera else { return Ok(()) };
+    film::check_memory(camera.pixels, memory_bytes(camera, scene.is_coloured()))?;
+    View::new(scene, camera, 0).map(|_| ())
 }
 
 /// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is that of
@@ -146,28 +134,28 @@ pub fn trace_picture(
     keep: bool,
     watch: Watch<'_>,
 ) -> Result<(Outcome, AnyPicture)> {
-    let spec = camera_of(scene)?;
+    let camera = camera_of(scene)?;
     check(scene)?;
     if scene.is_coloured() {
-        let (outcome, picture) = with_channels::<3, _>(scene, spec, plan, keep, watch, Rgb::WHITE)?;
+        let (outcome, picture) = with_channels::<3, _>(scene, camera, plan, keep, watch, Rgb::WHITE)?;
         Ok((outcome, AnyPicture::Rgb(picture)))
     } else {
-        let (outcome, picture) = with_channels::<1, _>(scene, spec, plan, keep, watch, Grey)?;
+        let (outcome, picture) = with_channels::<1, _>(scene, camera, plan, keep, watch, Grey)?;
         Ok((outcome, AnyPicture::Grey(picture)))
     }
 }
 
 fn with_channels<const C: usize, T: Channels<C>>(
     scene: &Scene,
-    spec: &CameraSpec,
+    camera: &Camera,
     plan: &Plan,
     keep: bool,
     watch: Watch<'_>,
     carried: T,
 ) -> Result<(Outcome, Picture<C>)> {
-    match spec.method {
+    match camera.method {
         Method::Map => {
-            let mut collector = Collector::new(scene, spec, plan, keep, watch)?;
+            let mut collector = Collector::new(scene, camera, plan, keep, watch)?;
             let outcome = trace_by(
                 scene,
                 plan,
@@ -176,7 +164,7 @@ fn with_channels<const C: usize, T: Channels<C>>(
             )?;
             Ok((outcome, collector.finish()?))
         }
-        Method::Splat => passes::splat::trace(scene, spec, plan, watch, carried),
+        Method::Splat => passes::splat::trace(scene, camera, plan, watch, carried),
     }
 }
 
@@ -186,9 +174,9 @@ fn with_channels<const C: usize, T: Channels<C>>(
 /// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have; more than the
 /// camera's memory holds.
 pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result<()> {
-    let spec = camera_of(scene)?;
+    let camera = camera_of(scene)?;
     check(scene)?;
-    if spec.method == Method::Splat {
+    if camera.method == Method::Splat {
         return Err(Diagnostic::new(
             Kind::Range,
             "method \"splat\" and photons from a file",
@@ -203,7 +191,7 @@ pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result
             "photons of the same scene",
         ));
     }
-    let (number, most) = (saved.photons.len(), passes::collector::capacity::<C>(spec));
+    let (number, most) = (saved.photons.len(), capacity::<C>(camera));
     if number > most {
         let required = format!("at most {most}, for which the camera has memory");
         return Err(Diagnostic::new(Kind::Limit, format!("{number} saved photons"), required)

@@ -72,7 +72,7 @@ pub struct RunReport {
 impl RunReport {
     /// Of a run by this plan, with the number of photons that its results stand for.
     pub fn new(scene: &Scene, plan: &Plan, photons: u64) -> Self {
-        let algorithm = plan.algorithm;
+        let algorithm = plan.algorithm();
         let rejects = algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
@@ -81,7 +81,7 @@ impl RunReport {
             sequence: algorithm.sequence.name(),
             solver: (!rejects).then(|| algorithm.solver.name()),
             rejection: rejects.then(|| algorithm.rejection.name()),
-            seed: plan.seed,
+            seed: plan.seed(),
             photons,
         }
     }

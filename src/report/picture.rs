@@ -106,7 +106,7 @@ pub fn camera_attributes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::exr::{OwnedData, read_maps};
+    use crate::files::exr::maps::{Attribute, Maps, Samples, read_maps};
     use glam::DVec3;
 
     fn spec() -> CameraSpec {
@@ -122,10 +122,10 @@ mod tests {
         }
     }
 
-    fn floats(maps: &crate::files::exr::Maps, name: &str) -> Vec<f32> {
+    fn floats(maps: &Maps, name: &str) -> Vec<f32> {
         match &maps.channels.iter().find(|(n, _)| n == name).unwrap().1 {
-            OwnedData::F32(values) => values.clone(),
-            OwnedData::U32(_) => panic!("{name}"),
+            Samples::F32(values) => values.clone(),
+            Samples::U32(_) => panic!("{name}"),
         }
     }
 
@@ -143,7 +143,7 @@ mod tests {
         assert_eq!(floats(&maps, "B"), [0.0, 0.5, 1.0, 1.5, 2.0, 2.5]);
         assert_eq!(floats(&maps, "bias")[5], -2.5);
         assert!(floats(&maps, "standard_error")[0].is_nan());
-        assert_eq!(maps.attributes["caustix.unit"], Value::Text("cd/m2".into()));
+        assert_eq!(maps.attributes["caustix.unit"], Attribute::Text("cd/m2".into()));
         let meta = ::exr::meta::MetaData::read_from_file(&path, true).unwrap();
         let header = &meta.headers[0];
         assert_eq!(header.own_attributes.white_luminance, Some(1.0));
@@ -159,7 +159,7 @@ mod tests {
         write_exr(&path, &spec, &film(|i| [i as f64]), &[]).unwrap();
         let maps = read_maps(&path).unwrap();
         assert_eq!(floats(&maps, "Y"), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-        assert_eq!(maps.attributes["caustix.png.white_cd_m2"], Value::F64(5.0));
+        assert_eq!(maps.attributes["caustix.png.white_cd_m2"], Attribute::Number(5.0));
     }
 
     #[test]

@@ -43,7 +43,7 @@ impl SavedReport {
     pub fn new(scene: &Scene, plan: &Plan, map: &Path, camera: CameraReport, total_s: f64) -> Self {
         Self {
             run: RunReport::new(scene, plan, camera.picture.photons),
-            replicates: plan.replicates,
+            replicates: plan.replicates(),
             map: map.display().to_string(),
             time: SavedTime { total_s },
             camera,

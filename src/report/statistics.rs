@@ -59,7 +59,7 @@ impl ReceiverStatistics {
         let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
         let lit = mean_lx > 0.0;
         Self {
-            hits: outcome.cells[index].sum.clone(),
+            hits: outcome.cells()[index].sum.clone(),
             flux_lm: flux.value,
             flux_standard_error_lm: flux.standard_error,
             min_lx,
@@ -77,7 +77,7 @@ impl ReceiverStatistics {
 
 /// Why a run has no standard error, where it has none.
 pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
-    match (outcome.replicates, outcome.plan.algorithm.sequence.is_randomised()) {
+    match (outcome.replicates, outcome.plan.algorithm().sequence.is_randomised()) {
         (2.., _) => None,
         (_, false) => {
             Some("this sequence has no seed: there is one replicate, and one set of points has no spread")

@@ -9,6 +9,7 @@ pub mod receiver;
 pub mod weighted;
 pub mod wide_sum;
 
-pub use counts::{Counts, Moments};
-pub use receiver::{FixedPointSink, ReceiverSink, Receivers};
-pub use weighted::{ChannelSink, WeightedReceivers};
+pub use counts::Moments;
+pub use receiver::{ReceiverSink, Receivers};
+pub use weighted::WeightedReceivers;
+pub use wide_sum::WideSum;

@@ -4,11 +4,9 @@
 //! A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is the (u = 0, v = 1) corner. A
 //! mesh has a cell a face.
 
-use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use crate::geometry::{Geometry, Hit};
-use crate::scene::receiver::{Cells, Receiver};
+use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
 use crate::surface::Throughput;
-use crate::transport::weighted::Weighing;
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
@@ -88,7 +86,7 @@ impl<'s> Receivers<'s> {
         ReceiverSink { receivers: self }
     }
 
-    /// The same for weighted photons, a photon of weight 1 counting as `units_per_photon`.
+    /// A handle for weighted photons, one of weight 1 counting as `units_per_photon`.
     pub fn fixed_point_sink(&self, units_per_photon: f64) -> FixedPointSink<'_, 's> {
         FixedPointSink { receivers: self, units_per_photon, amount: 0 }
     }
@@ -96,13 +94,6 @@ impl<'s> Receivers<'s> {
     /// Counts of a receiver, row by row from the top left, or face by face.
     pub fn counts(&self, receiver: usize) -> &Counts {
         &self.counts[receiver]
-    }
-
-    /// Adds the counts of another tally of the same scene.
-    pub fn merge(&mut self, other: &Self) {
-        for (a, b) in self.counts.iter_mut().zip(&other.counts) {
-            a.merge(b);
-        }
     }
 
     /// Sets everything to zero, for the next replicate.
@@ -134,17 +125,15 @@ pub struct FixedPointSink<'r, 's> {
     amount: u64,
 }
 
-impl<T: Throughput> Weighing<T> for FixedPointSink<'_, '_> {
-    #[inline]
-    fn weigh(&mut self, weight: f64) {
-        self.amount = (weight * self.units_per_photon + 0.5) as u64;
-    }
-}
-
 impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
         all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add_amount(cell, self.amount));
+    }
+
+    #[inline]
+    fn start(&mut self, weight: f64) {
+        self.amount = (weight * self.units_per_photon + 0.5) as u64;
     }
 }

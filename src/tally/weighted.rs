@@ -77,29 +77,9 @@ impl<'s> WeightedReceivers<'s> {
         ChannelSink { receivers: self, scale: self.scale() }
     }
 
-    /// Number of cells of all receivers, one after another.
-    pub fn len(&self) -> usize {
-        self.sums.len()
-    }
-
-    /// Whether there are no cells.
-    pub fn is_empty(&self) -> bool {
-        self.sums.is_empty()
-    }
-
     /// Sum of the weights that arrived in a cell, by channel, in photons.
     pub fn weight(&self, cell: usize) -> [f64; 3] {
-        self.quanta(cell).map(|quanta| quanta as f64 / self.scale())
-    }
-
-    /// The same in quanta of 2^-[`Self::fraction_bits`] photons: exact.
-    pub fn quanta(&self, cell: usize) -> [u64; 3] {
-        std::array::from_fn(|channel| self.sums[cell][channel].load(Ordering::Relaxed))
-    }
-
-    /// Bits after the point.
-    pub fn fraction_bits(&self) -> u32 {
-        self.fraction_bits
+        self.sums[cell].each_ref().map(|sum| sum.load(Ordering::Relaxed) as f64 / self.scale())
     }
 
     fn scale(&self) -> f64 {
@@ -144,8 +124,8 @@ mod tests {
             ((1 << 32) - 1, 1, 32),
         ] {
             let tally = bits(photons, arrivals).unwrap();
-            assert_eq!(tally.fraction_bits(), expected, "{photons} x {arrivals}");
-            let most = (u128::from(photons) * u128::from(arrivals)) << tally.fraction_bits();
+            assert_eq!(tally.fraction_bits, expected, "{photons} x {arrivals}");
+            let most = (u128::from(photons) * u128::from(arrivals)) << tally.fraction_bits;
             assert!(most <= u128::from(u64::MAX));
         }
         assert!(bits(1 << 32, 1).is_err());

@@ -6,7 +6,7 @@ use crate::emitter::Emission;
 use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
 use crate::sample::coordinates::Chooser;
 use crate::scene::Scene;
-use crate::surface::{Grey, Incidence, Outcome, Throughput};
+use crate::surface::{Event, Grey, Incidence, Throughput};
 
 use super::census::Exceptions;
 
@@ -33,6 +33,9 @@ pub struct Arrival<'a, T = Grey> {
 pub trait Sink<T = Grey> {
     /// A photon arrives.
     fn arrive(&mut self, arrival: &Arrival<'_, T>);
+
+    /// A photon starts; its arrivals follow. `weight` is [`Emission::weight`].
+    fn start(&mut self, _weight: f64) {}
 }
 
 /// How a photon ended.
@@ -57,7 +60,7 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     sink: &mut S,
     exceptions: &mut Exceptions,
 ) -> End {
-    let Emission { mut origin, mut direction } = emission;
+    let Emission { mut origin, mut direction, .. } = emission;
     for events in 0..MAX_EVENTS {
         let Some(hit) =
             scene.geometry.nearest(origin, direction, &whereabouts, &mut exceptions.skipped_crossings)
@@ -65,20 +68,14 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
             return End::Escaped;
         };
         sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
-        let sign = if hit.front { 1.0 } else { -1.0 };
-        let at = Incidence {
-            direction,
-            facet: hit.normal * sign,
-            smooth: hit.shading_normal * sign,
-            front: hit.front,
-        };
-        match scene.bsdf(hit.surface).interact(&at, chooser, &mut carried) {
-            Outcome::Absorbed => return End::Absorbed(hit.surface),
-            Outcome::BelowHorizon => {
+        let at = Incidence::of(&hit, direction);
+        match scene.material(hit.surface).scatter(&at, chooser, &mut carried) {
+            Event::Absorbed => return End::Absorbed(hit.surface),
+            Event::BelowHorizon => {
                 exceptions.below_horizon += 1;
                 return End::Absorbed(hit.surface);
             }
-            Outcome::Leaves { direction: onward, through, corrected } => {
+            Event::Leaves { direction: onward, through, corrected } => {
                 exceptions.corrected_directions += u64::from(corrected);
                 let side = if hit.front == through { Side::Back } else { Side::Front };
                 whereabouts.leave(&hit, side);
@@ -88,3 +85,6 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     }
     End::Killed
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,9 +4,8 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::files::scene_toml::build::build;
+use caustix::files::bytes::Base;
 use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
 use caustix::run::{Estimate, Plan, Settings, trace};
 use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
@@ -33,7 +32,7 @@ fn text(lamps: &[&str], reflectance: &str, events: &str) -> String {
 
 fn scene(lamps: &[&str], reflectance: &str, events: &str) -> Scene {
     let text = text(lamps, reflectance, events);
-    build(&parse(&text, "test.toml", Base::Directory(".".into())).unwrap()).unwrap()
+    parse(&text, "test.toml", Base::Directory(".".into())).unwrap().build().unwrap()
 }
 
 fn flux(scene: &Scene) -> Estimate {
@@ -142,7 +141,7 @@ fn only_colour_that_is_not_white_makes_a_scene_coloured() {
 #[test]
 fn wrong_colours_are_refused() {
     let errors = |lamp: &str| -> Vec<Diagnostic> {
-        parse(&text(&[lamp], "0.5", "all"), "test.toml", Base::Directory(".".into())).expect_err(lamp)
+        parse(&text(&[lamp], "0.5", "all"), "test.toml", Base::Directory(".".into())).err().expect(lamp)
     };
     for (lamp, line, kind, required) in [
         ("colour = [0, 0, 0]", 5, Kind::Range, "flux_lm says how bright"),

@@ -7,6 +7,7 @@ mod support;
 mod coverage;
 mod determinism;
 mod direct;
+mod disc;
 mod discontinuous;
 mod emitter_colour;
 mod interrupted;

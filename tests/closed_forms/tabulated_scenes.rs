@@ -1,16 +1,17 @@
 //! Tabulated surfaces in closed scenes: against the Lambertian material, and where all light must end in one place.
 
 use caustix::emitter::{Emitter, Isotropic};
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::scattering::{LobeSide, ScatterTable};
+use caustix::scene::receiver::ReceiverSide;
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::surface::tabulated::{Energy, Options, Sides};
-use caustix::surface::{Bsdf, Grey, Reference, Reflectance, Tabulated};
+use caustix::surface::{Grey, Lambertian, Material, Reference, Reflectance, Tabulated};
 use caustix::transport::census::Exceptions;
 use caustix::transport::{Arrival, End, Sink, walk};
 use glam::DVec3;
@@ -20,50 +21,46 @@ use crate::support::scenes::run;
 use crate::support::statistics::z_test;
 use crate::support::tables::{lambert, lobe, steps};
 
-fn tabulated(table: &ScatterTable, options: &Options) -> Bsdf {
-    Bsdf::Tabulated(Box::new(Tabulated::new(table, options).unwrap().0))
+fn tabulated(table: &ScatterTable, options: &Options) -> Material {
+    Material::Tabulated(Box::new(Tabulated::new(table, options).unwrap().0))
 }
 
-fn diffuser(albedo: f64, step: f64, energy: Energy) -> Bsdf {
+fn diffuser(albedo: f64, step: f64, energy: Energy) -> Material {
     let table = ScatterTable::new("lambert", vec![lambert(albedo, step)], vec![]).unwrap();
     tabulated(&table, &Options { energy, ..Options::default() })
 }
 
-fn surface(name: &str, shape: Shape, bsdf: Bsdf) -> (Surface, Bsdf) {
+fn surface(name: &str, shape: Shape, bsdf: Material) -> (Surface, Material) {
     (Surface { name: name.into(), shape }, bsdf)
 }
 
 /// A lamp in a box with a shelf, both of one material each; every wall of the shelf is a receiver of 4 x 4 cells.
-fn room(walls: Bsdf, shelf: Bsdf) -> Scene {
+fn room(walls: Material, shelf: Material) -> Scene {
     let box_shape = Shape::Mesh(box_mesh(DVec3::splat(-1.0), DVec3::new(1.0, 1.2, 0.9)).unwrap());
     let plate = Rectangle::new(DVec3::new(-0.7, -0.6, -0.3), DVec3::X * 1.2, DVec3::Y * 1.1).unwrap();
-    let receiver = |front: bool| ReceiverSpec {
-        name: if front { "up" } else { "down" }.into(),
-        surface: "shelf".into(),
-        cells: Some([4, 4]),
-        side: if front { ReceiverSide::Front } else { ReceiverSide::Back },
-        events: ReceiverEvents::All,
-    };
-    let lamp = Emitter::Isotropic(Isotropic { position: DVec3::new(0.3, 0.4, 0.5), flux_lm: 1000.0 });
-    Scene::new(SceneParts {
-        surfaces: vec![surface("walls", box_shape, walls), surface("shelf", Shape::Rectangle(plate), shelf)],
-        emitters: vec![("lamp".into(), lamp)],
-        receivers: vec![receiver(true), receiver(false)],
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let receiver =
+        |name, side| ReceiverSpec::new(name, "shelf").unwrap().with_cells([4, 4]).unwrap().on_side(side);
+    let lamp = Emitter::Isotropic(Isotropic::new(DVec3::new(0.3, 0.4, 0.5), 1000.0).unwrap());
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface("walls", box_shape, walls)
+        .surface("shelf", plate.into(), shelf)
+        .emitter("lamp", lamp)
+        .receiver(receiver("up", ReceiverSide::Front))
+        .receiver(receiver("down", ReceiverSide::Back));
+    scene.build().unwrap()
 }
 
 #[test]
 fn a_tabulated_diffuser_is_a_lambertian_surface() {
     let tables = room(diffuser(0.7, 1.0, Energy::Refuse), diffuser(0.5, 1.0, Energy::Refuse));
     // Bilinear between nodes a degree apart, a cosine loses 2.5e-5 of its integral: the same albedo on both sides.
-    let albedo = |surface: usize| match &tables.bsdfs()[surface] {
-        Bsdf::Tabulated(t) => t.albedo(true, DVec3::Z)[0],
+    let albedo = |surface: usize| match &tables.materials()[surface] {
+        Material::Tabulated(t) => t.albedo(true, DVec3::Z)[0],
         other => panic!("{other:?}"),
     };
     assert!((albedo(0) / 0.7 - 1.0).abs() < 3e-5 && (albedo(1) / 0.5 - 1.0).abs() < 3e-5);
-    let matt = |part| Bsdf::Lambertian { reflectance: Reflectance::grey(part) };
+    let matt = |part| Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()));
     let formula = room(matt(albedo(0)), matt(albedo(1)));
     let replicates = 32;
     let a = run(&tables, Sequence::SobolOwen, 1 << 13, replicates, 1);
@@ -102,7 +99,7 @@ fn white_furnace_all_light_ends_on_the_one_black_patch() {
         Tabulated::new(&table, &Options { energy: Energy::Scale, ..Options::default() }).unwrap();
     assert_eq!(warnings.len(), 1);
     assert!(warnings[0].found().contains("an albedo of 1.02"), "{}", warnings[0].found());
-    let scene = room(Bsdf::Tabulated(Box::new(white)), Bsdf::Absorber);
+    let scene = room(Material::Tabulated(Box::new(white)), Material::Absorber);
     let outcome = run(&scene, Sequence::SobolOwen, 1 << 14, 8, 3);
     assert_eq!(outcome.ledger.absorbed, [0, outcome.photons]);
     assert_eq!((outcome.ledger.killed, outcome.ledger.escaped), (0, 0));
@@ -112,21 +109,18 @@ fn white_furnace_all_light_ends_on_the_one_black_patch() {
 fn hits_per_photon_have_the_mean_that_the_albedo_gives() {
     for (seed, albedo) in [(1, 0.3), (2, 0.8), (3, 0.95)] {
         let bsdf = diffuser(albedo, 6.0, Energy::Refuse);
-        let Bsdf::Tabulated(t) = &bsdf else { unreachable!() };
+        let Material::Tabulated(t) = &bsdf else { unreachable!() };
         let a = t.albedo(true, DVec3::Z)[0];
         let ball = Shape::Sphere(Sphere::new(DVec3::new(0.1, 0.0, 0.2), 1.3).unwrap());
-        let lamp = Emitter::Isotropic(Isotropic { position: DVec3::new(0.4, -0.3, 0.1), flux_lm: 1.0 });
-        let scene = Scene::new(SceneParts {
-            surfaces: vec![surface("ball", ball, bsdf)],
-            emitters: vec![("lamp".into(), lamp)],
-            ..SceneParts::default()
-        })
-        .unwrap();
+        let lamp = Emitter::Isotropic(Isotropic::new(DVec3::new(0.4, -0.3, 0.1), 1.0).unwrap());
+        let mut scene = SceneBuilder::new();
+        scene.surface("ball", ball, bsdf).emitter("lamp", lamp);
+        let scene = scene.build().unwrap();
         let points = IndependentPoints::new(seed, 0);
         let (n, mut sum) = (1u64 << 17, 0.0);
         for index in 0..n {
             let mut c = Coordinates::new(&points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut c);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut c).unwrap();
             let (mut sink, mut exceptions) = (Hits(0), Exceptions::default());
             let start = scene.start(emitter);
             let end = walk(&scene, emission, start, Grey, &mut c, &mut sink, &mut exceptions);
@@ -194,7 +188,7 @@ fn two_lobes_that_exceed_one_together_are_scaled_together() {
 #[test]
 fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
     use caustix::scattering::{Frame, Quantity};
-    use caustix::surface::{Incidence, Outcome};
+    use caustix::surface::{Event, Incidence};
     let angles = || [vec![0.0], vec![0.0], steps(0.0, 90.0, 5.0), steps(0.0, 360.0, 60.0)];
     let wi = DVec3::new(0.48, 0.36, 0.8);
     for (quantity, expected) in [
@@ -204,13 +198,13 @@ fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
         let data = lobe((quantity, Frame::Surface), angles(), 1, |_, _, _, _, _| 0.1);
         let table = ScatterTable::new("thin", vec![data], vec![]).unwrap();
         let options = Options { specular_remainder: true, ..Options::default() };
-        let Bsdf::Tabulated(t) = tabulated(&table, &options) else { unreachable!() };
+        let Material::Tabulated(t) = tabulated(&table, &options) else { unreachable!() };
         let points = IndependentPoints::new(5, 0);
         let (n, mut specular) = (20_000u64, 0.0);
         for i in 0..n {
             let at = Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: true };
-            match t.interact(&at, &mut Coordinates::new(&points, i, true), &mut Grey) {
-                Outcome::Leaves { direction, through, .. } => {
+            match t.scatter(&at, &mut Coordinates::new(&points, i, true), &mut Grey) {
+                Event::Leaves { direction, through, .. } => {
                     assert_eq!(through, quantity == Quantity::Transmission);
                     assert_eq!(direction.z > 0.0, !through);
                     specular += f64::from(u8::from((direction - expected).length() < 1e-12));
@@ -227,7 +221,7 @@ fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
 #[test]
 fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
     use caustix::scattering::{Frame, Quantity};
-    use caustix::surface::{Incidence, Outcome};
+    use caustix::surface::{Event, Incidence};
     // Black unless light comes from phi_i = 90 degrees: seen only along one tangent.
     let angles = [vec![60.0], steps(0.0, 360.0, 45.0), steps(0.0, 90.0, 10.0), steps(0.0, 360.0, 60.0)];
     let data = lobe(
@@ -240,13 +234,13 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
     );
     let table = ScatterTable::new("slit", vec![data], vec![]).unwrap();
     let lit = |options: &Options, normal: DVec3, front: bool, from: DVec3| {
-        let Bsdf::Tabulated(t) = tabulated(&table, options) else { unreachable!() };
+        let Material::Tabulated(t) = tabulated(&table, options) else { unreachable!() };
         let wi = (normal * 0.5 + from * 0.75f64.sqrt()).normalize();
         let at = Incidence { direction: -wi, facet: normal, smooth: normal, front };
         let points = IndependentPoints::new(1, 0);
         (0..200).any(|i| {
             let mut c = Coordinates::new(&points, i, true);
-            !matches!(t.interact(&at, &mut c, &mut Grey), Outcome::Absorbed)
+            !matches!(t.scatter(&at, &mut c, &mut Grey), Event::Absorbed)
         })
     };
     let along_x = Options::default();
@@ -266,7 +260,7 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
 /// counted, the rest leaves. Both parts by the midpoint rule over the hemisphere, in the surface's own angles.
 #[test]
 fn light_below_the_horizon_is_absorbed_and_counted() {
-    use caustix::emitter::collimated::{Collimated, CrossSection};
+    use caustix::emitter::{AimFrame, Beam, BeamSection};
     use caustix::scattering::{Frame, Quantity};
     let angles = [vec![70.0], vec![0.0], steps(0.0, 60.0, 10.0), steps(0.0, 360.0, 30.0)];
     let data = lobe((Quantity::Reflection, Frame::Specular), angles, 1, |_, _, _, polar, _| {
@@ -274,7 +268,7 @@ fn light_below_the_horizon_is_absorbed_and_counted() {
     });
     let table = ScatterTable::new("grazing", vec![data], vec![]).unwrap();
     let bsdf = tabulated(&table, &Options::default());
-    let Bsdf::Tabulated(t) = &bsdf else { unreachable!() };
+    let Material::Tabulated(t) = &bsdf else { unreachable!() };
     let wi = crate::support::tables::incidence(85.0, 30.0);
     let (n, degree) = (900, std::f64::consts::PI / 180.0);
     let mut above = 0.0;
@@ -292,16 +286,12 @@ fn light_below_the_horizon_is_absorbed_and_counted() {
     above *= 90.0 * 360.0 * degree * degree / f64::from(n * n);
     let below = t.albedo(true, wi)[0] - above;
     assert!(below > 0.03 && above > 0.1, "{below} {above}");
-    let across = DVec3::Z.cross(wi).normalize() * 0.1;
-    let section = CrossSection::Disc(across, wi.cross(across));
-    let beam = Collimated { centre: 4.0 * wi, direction: -wi, section, flux_lm: 100.0 };
+    let frame = AimFrame::new(-wi, Some(DVec3::Z)).unwrap();
+    let beam = Beam::new(4.0 * wi, frame, BeamSection::Disc { radius: 0.1 }, 100.0).unwrap();
     let plate = Rectangle::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0).unwrap();
-    let scene = Scene::new(SceneParts {
-        surfaces: vec![surface("plate", Shape::Rectangle(plate), bsdf)],
-        emitters: vec![("beam".into(), Emitter::Collimated(beam))],
-        ..SceneParts::default()
-    })
-    .unwrap();
+    let mut scene = SceneBuilder::new();
+    scene.surface("plate", Shape::Rectangle(plate), bsdf).emitter("beam", Emitter::Beam(beam));
+    let scene = scene.build().unwrap();
     let outcome = run(&scene, Sequence::Independent, 1 << 18, 4, 5);
     let photons = outcome.photons as f64;
     for (count, part) in [(outcome.census.exceptions.below_horizon, below), (outcome.ledger.escaped, above)] {

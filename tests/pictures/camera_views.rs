@@ -73,6 +73,29 @@ fn a_point_below_the_corner_of_a_square_light_has_the_form_factor_0_138532() {
 }
 
 #[test]
+fn a_plate_below_a_round_light_has_the_form_factor_of_the_disc_near_and_far() {
+    // Luminance 1, radius 0.5. The plate looks up, h below and r off the axis; in radii below.
+    for (i, (h, r)) in [(1.0, 0.0), (0.2, 0.3), (0.1, 0.7), (0.45, 0.45), (3.0, 1.0)].into_iter().enumerate()
+    {
+        let text = [
+            format!(
+                "[[emitter]]\ntype = \"disc\"\nposition = [0, 0, {h}]\nradius = 0.5\nflux_lm = {}\n",
+                PI * PI * 0.25
+            ),
+            floor("plate", "white", [r, 0.0, 0.0], 0.1),
+        ];
+        let spec = CameraSpec { samples: 1024, ..narrow([r + 3.0, 0.0, 0.1], [r, 0.0, 0.0]) };
+        let seen = pixel(&scene(&text), &spec, 4, 0.1);
+        let (h2, r2) = (4.0 * h * h, 4.0 * r * r);
+        let sum = 1.0 + h2 + r2;
+        let exact = 0.5 * (1.0 - (sum - 2.0) / (sum * sum - 4.0 * r2).sqrt());
+        assert_close(&format!("disc {i}"), seen.direct, 0.8 * exact, 0.03);
+        let light = pixel(&scene(&text), &narrow([r, 0.0, 0.05], [0.1, 0.2, h]), 4, 0.1);
+        assert_close(&format!("disc {i} itself"), light.emission, 1.0, 1e-12);
+    }
+}
+
+#[test]
 fn a_lit_plate_is_as_bright_directly_by_mirror_and_less_fresnel_through_a_pane() {
     let parts = [
         beam([0.0, 0.0, -3.0], [0.0, 0.0, 1.0], 0.5, 100.0),

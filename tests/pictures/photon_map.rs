@@ -1,8 +1,9 @@
 //! The photon map as a container: searches against looking at every photon, order, extremes, memory, packing.
 
 use caustix::error::Kind;
+use caustix::files::photon_map as file;
 use caustix::picture::photon_map::record::{FRONT, SCATTERED, pack, unpack};
-use caustix::picture::photon_map::{Frame, Photon, PhotonMap, SavedMap, file};
+use caustix::picture::photon_map::{Frame, Photon, PhotonMap, SavedMap};
 use caustix::sequence::hash::mix64;
 use glam::DVec3;
 use sha2::{Digest, Sha256};
@@ -256,7 +257,7 @@ fn saved() -> SavedMap<3> {
 
 fn bytes_of<const C: usize>(map: &SavedMap<C>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    map.to_writer(&mut bytes).unwrap();
+    file::write(&map, &mut bytes).unwrap();
     bytes
 }
 
@@ -265,15 +266,15 @@ fn a_saved_map_comes_back_as_it_was() {
     let map = saved();
     let bytes = bytes_of(&map);
     assert_eq!(file::channels(&bytes).unwrap(), 3);
-    assert_eq!(SavedMap::<3>::from_bytes(&bytes, "abc123").unwrap(), map);
+    assert_eq!(file::read::<3>(&bytes, "abc123").unwrap(), map);
     let empty = SavedMap { photons: Vec::new(), ..map };
-    assert_eq!(SavedMap::<3>::from_bytes(&bytes_of(&empty), "abc123").unwrap(), empty);
+    assert_eq!(file::read::<3>(&bytes_of(&empty), "abc123").unwrap(), empty);
 }
 
 #[test]
 fn damaged_and_foreign_maps_are_refused() {
     let bytes = bytes_of(&saved());
-    let error = |bytes: &[u8], hash: &str| SavedMap::<3>::from_bytes(bytes, hash).unwrap_err();
+    let error = |bytes: &[u8], hash: &str| file::read::<3>(bytes, hash).unwrap_err();
     // Every flipped bit in the head, and some elsewhere; every truncation in the head, and some elsewhere.
     for at in (0..200).chain((200..bytes.len()).step_by(997)).chain(bytes.len() - 32..bytes.len()) {
         let mut damaged = bytes.clone();
@@ -293,7 +294,7 @@ fn damaged_and_foreign_maps_are_refused() {
     assert_eq!(error(b"not a photon map at all", "abc123").kind(), Kind::Syntax);
     let foreign = error(&bytes, "another");
     assert!(foreign.found().contains("abc123") && foreign.required().contains("another"), "{foreign}");
-    let channels = SavedMap::<1>::from_bytes(&bytes, "abc123").unwrap_err();
+    let channels = file::read::<1>(&bytes, "abc123").unwrap_err();
     assert!(channels.found().contains("3 channel"), "{channels}");
 
     // Sound checksums over numbers that cannot be.

@@ -3,22 +3,21 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use caustix::error::Kind;
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
+use caustix::files::photon_map;
 use caustix::picture::camera::Film;
-use caustix::picture::photon_map::SavedMap;
 use caustix::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
 use caustix::run::{Outcome, Plan, StoppedBy, trace};
 use caustix::scene::Identity;
-use caustix::scene::camera::{Bandwidth, CameraSpec};
+use caustix::scene::camera::{Bandwidth, Camera, CameraSpec};
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Bsdf, Dielectric, Reflectance};
+use caustix::scene::{Scene, SceneBuilder};
+use caustix::surface::{Dielectric, Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
 
 /// A glass ball above a table before a wall, under a beam and a panel: light of L S+ D and of L D D.
-fn ball_on_table(wall: Bsdf, memory_bytes: u64, with_camera: bool) -> Scene {
+fn ball_on_table(wall: Material, memory_bytes: u64, with_camera: bool) -> Scene {
     let position = DVec3::new(0.2, -1.6, 0.9);
     let camera = CameraSpec {
         photon_memory_bytes: memory_bytes,
@@ -28,28 +27,20 @@ fn ball_on_table(wall: Bsdf, memory_bytes: u64, with_camera: bool) -> Scene {
     };
     let table = rectangle("table", DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
     let back = rectangle("wall", DVec3::new(-1.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 1.5);
-    let glass = Bsdf::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
-    Scene::new(SceneParts {
-        surfaces: vec![
-            (table, grey(0.5)),
-            (back, wall),
-            (sphere("ball", DVec3::new(0.1, 0.2, 0.35), 0.25), glass),
-        ],
-        emitters: vec![
-            ("beam".into(), beam(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z, 0.3, 300.0)),
-            ("panel".into(), panel(DVec3::Z * 1.8, DVec3::NEG_Z, DVec3::X, [0.4, 0.4], 700.0)),
-        ],
-        receivers: vec![ReceiverSpec {
-            name: "table".into(),
-            surface: "table".into(),
-            cells: Some([8, 8]),
-            side: ReceiverSide::Front,
-            events: ReceiverEvents::All,
-        }],
-        camera: with_camera.then_some(camera),
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
+    let mut scene = SceneBuilder::new();
+    let ball = sphere("ball", DVec3::new(0.1, 0.2, 0.35), 0.25);
+    for (surface, material) in [(table, grey(0.5)), (back, wall), (ball, glass)] {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    scene
+        .emitter("beam", beam(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z, 0.3, 300.0))
+        .emitter("panel", panel(DVec3::Z * 1.8, DVec3::NEG_Z, DVec3::X, [0.4, 0.4], 700.0))
+        .receiver(ReceiverSpec::new("table", "table").unwrap().with_cells([8, 8]).unwrap());
+    if with_camera {
+        scene.camera(Camera::new(camera).unwrap());
+    }
+    scene.build().unwrap()
 }
 
 const ROOM: u64 = 1 << 30;
@@ -101,7 +92,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
 
 #[test]
 fn colour_takes_three_channels_and_its_luminance_is_that_of_the_weights() {
-    let red = Bsdf::Lambertian { reflectance: Reflectance::rgb([0.9, 0.1, 0.1]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.9, 0.1, 0.1]).unwrap()));
     let scene = ball_on_table(red, ROOM, true);
     let plan = plan(1 << 14, 2);
     let (_, picture) = trace_picture(&scene, &plan, true, unwatched(&AtomicBool::new(false))).unwrap();
@@ -290,19 +281,19 @@ fn a_saved_map_is_of_its_scene_and_settings_and_undamaged() {
     let scene = ball_on_table(grey(0.4), ROOM, true);
     let (_, fresh) = pictured(&scene, &plan, true);
     let mut bytes = Vec::new();
-    fresh.photons.unwrap().to_writer(&mut bytes).unwrap();
+    photon_map::write(&fresh.photons.unwrap(), &mut bytes).unwrap();
     let hash = hash_of_photons(&scene, &plan);
-    let read = SavedMap::<1>::from_bytes(&bytes, &hash).unwrap();
+    let read = photon_map::read::<1>(&bytes, &hash).unwrap();
     let again = picture_of_saved(&scene, &plan, read, unwatched(&AtomicBool::new(false))).unwrap();
     assert!(bits(&again.film) == bits(&fresh.film));
     for at in [0, 9, bytes.len() / 2, bytes.len() - 1] {
         let mut damaged = bytes.clone();
         damaged[at] ^= 4;
-        assert!(SavedMap::<1>::from_bytes(&damaged, &hash).is_err(), "byte {at}");
+        assert!(photon_map::read::<1>(&damaged, &hash).is_err(), "byte {at}");
     }
-    assert!(SavedMap::<1>::from_bytes(&bytes[..bytes.len() - 50], &hash).is_err());
+    assert!(photon_map::read::<1>(&bytes[..bytes.len() - 50], &hash).is_err());
     let other = Plan { seed: 8, ..plan };
-    let refused = SavedMap::<1>::from_bytes(&bytes, &hash_of_photons(&scene, &other));
+    let refused = photon_map::read::<1>(&bytes, &hash_of_photons(&scene, &other));
     assert_eq!(refused.unwrap_err().kind(), Kind::Range);
 }
 

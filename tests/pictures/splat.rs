@@ -12,7 +12,7 @@ use caustix::run::Plan;
 use caustix::run::tracer::Tracer;
 use caustix::scene::Scene;
 use caustix::scene::camera::{CameraSpec, Filter, Method};
-use caustix::surface::{Bsdf, Dielectric, Grey, Reflectance, Rgb};
+use caustix::surface::{Dielectric, Grey, Lambertian, Material, Reflectance, Rgb};
 use caustix::tally::Receivers;
 use glam::{DVec2, DVec3};
 
@@ -92,7 +92,7 @@ fn a_uniformly_lit_plate_is_as_bright_in_every_pixel_from_anywhere() {
 #[test]
 fn colour_is_that_of_the_plate() {
     let plate = rectangle("plate", DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
-    let red = Bsdf::Lambertian { reflectance: Reflectance::rgb([0.8, 0.3, 0.05]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.8, 0.3, 0.05]).unwrap()));
     let lit = scene(vec![(plate, red)], vec![beam(DVec3::Z * 9.0, DVec3::NEG_Z, 4.0, 640.0)], None);
     let spec = CameraSpec::pinhole(DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y, 60.0, [3, 2]);
     let got = splatted(&lit, &spec, &plan(1 << 17, 8), Rgb::WHITE);
@@ -182,7 +182,7 @@ fn nothing_is_seen_through_glass_or_from_the_other_side() {
     assert_eq!(sum(&bare, DVec3::NEG_Z * 2.0), 0.0, "the dark side of a thin plate");
     // A small sheet of glass just before the pinhole; light passes beside it.
     let sheet = rectangle("sheet", DVec3::new(-1.5, -1.5, 1.9), DVec3::X * 3.0, DVec3::Y * 3.0);
-    let glass = Bsdf::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let behind_glass = scene(vec![(plate(), grey(0.6)), (sheet, glass)], light(), None);
     assert_eq!(sum(&behind_glass, DVec3::Z * 2.0), 0.0);
 }

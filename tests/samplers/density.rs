@@ -5,7 +5,7 @@
 //! file's type. Per file: chi-square on the table's cells and on cells shifted by half a cell, Kolmogorov-Smirnov on the
 //! polar angle and on the azimuth given the polar angle; the level of each is Sidak's for all files together.
 
-use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::emitter::{AimFrame, Emits, Emitter, Emitters, Photometric};
 use caustix::files::lm63;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
@@ -35,7 +35,8 @@ const AIM: DVec3 = DVec3::new(0.3, -0.7, -0.5);
 const UP: DVec3 = DVec3::new(0.2, 0.1, 1.0);
 
 fn emitter(photometry: &Photometry) -> Photometric {
-    Photometric::new(photometry, DVec3::new(1.0, 2.0, 3.0), AIM, UP, None).unwrap()
+    Photometric::new(photometry, DVec3::new(1.0, 2.0, 3.0), AimFrame::new(AIM, Some(UP)).unwrap(), None)
+        .unwrap()
 }
 
 /// (polar angle, azimuth) in degrees of directions that photons of this file start with.
@@ -50,11 +51,11 @@ fn angles_by(
     density: &Density<'_>,
     seed: u64,
 ) -> Vec<(f64, f64)> {
-    let emitters = Emitters::new(vec![Emitter::Photometric(Box::new(emitter(photometry)))]).unwrap();
+    let emitters = Emitters::new(vec![Emitter::Photometric(emitter(photometry))]).unwrap();
     let points = IndependentPoints::new(seed, 0);
     let frame = Luminaire::new(AIM, UP);
     (0..)
-        .filter_map(|i| emitters.emit_by(sampling, &mut Coordinates::new(&points, i, true)))
+        .filter_map(|i| emitters.emit(sampling, &mut Coordinates::new(&points, i, true)))
         .take(SAMPLES as usize)
         .map(|(_, emission)| {
             let angles = frame.angles_deg(photometry.web.photometric_type, emission.direction);
@@ -144,7 +145,7 @@ fn check_flux(path: &Path) {
 /// `invert(sample(u)) = u` at points that have nothing to do with the grid.
 fn check_invert(path: &Path) {
     let photometry = lm63::read(path).unwrap();
-    let grid = emitter(&photometry).grid().clone();
+    let grid = emitter(&photometry).table().unwrap().clone();
     let points = IndependentPoints::new(99, 0);
     let (mut worst, mut checked) = ([0.0f64; 2], 0);
     for i in 0..20_000 {

@@ -11,7 +11,7 @@ use caustix::sequence::hash::mix64;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::to_unit_f64;
 use caustix::surface::tabulated::Options;
-use caustix::surface::{Bsdf, Fixed, Grey, Incidence, Outcome, Rgb, Tabulated, Throughput};
+use caustix::surface::{Event, Fixed, Grey, Incidence, Material, Rgb, Tabulated, Throughput};
 use glam::DVec3;
 
 use crate::support::statistics::{chi_square, sidak, z_test};
@@ -233,11 +233,11 @@ fn extremes_are_what_they_are_called() {
     for name in ["ggx", "stops at 60 degrees", "anisotropic"] {
         assert!(below_horizon(named(name), grazing, 2000) > 0.01, "{name} crosses the horizon");
     }
-    let bsdf = Bsdf::Tabulated(Box::new(named("ggx").sampler.clone()));
+    let bsdf = Material::Tabulated(Box::new(named("ggx").sampler.clone()));
     let points = IndependentPoints::new(3, 0);
     let lost = (0..2000).any(|i| {
         let mut c = Coordinates::new(&points, i, true);
-        matches!(bsdf.interact(&arriving(grazing), &mut c, &mut Grey), Outcome::BelowHorizon)
+        matches!(bsdf.scatter(&arriving(grazing), &mut c, &mut Grey), Event::BelowHorizon)
     });
     assert!(lost, "light below the horizon is an account of its own");
 
@@ -305,7 +305,7 @@ fn rejection_follows_the_same_density() {
     for case in chosen {
         let surface = surface(case);
         let t = &surface.sampler;
-        let bsdf = Bsdf::Tabulated(Box::new(t.clone()));
+        let bsdf = Material::Tabulated(Box::new(t.clone()));
         for (k, rejection) in ways.into_iter().enumerate() {
             for wi in wis {
                 let expected: Vec<Vec<f64>> =
@@ -315,14 +315,14 @@ fn rejection_follows_the_same_density() {
                 let (n, mut below, mut absorbed) = (30_000u64, 0, 0);
                 for i in 0..n {
                     let mut c = Coordinates::sampling_by(&points, i, false, Sampling::Rejection(rejection));
-                    match bsdf.interact(&arriving(wi), &mut c, &mut Grey) {
-                        Outcome::Leaves { direction, through, .. } => {
+                    match bsdf.scatter(&arriving(wi), &mut c, &mut Grey) {
+                        Event::Leaves { direction, through, .. } => {
                             let quantity = if through { Transmission } else { Reflection };
                             let lobe = case.lobes.iter().position(|l| l.quantity == quantity).unwrap();
                             observed[lobe][cell(&surface, lobe, wi, direction)] += 1;
                         }
-                        Outcome::BelowHorizon => below += 1,
-                        Outcome::Absorbed => absorbed += 1,
+                        Event::BelowHorizon => below += 1,
+                        Event::Absorbed => absorbed += 1,
                     }
                 }
                 // Below the horizon there is no direction to count: the cells that may reach there are one.
@@ -360,7 +360,7 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
             let mirrored = DVec3::new(-wi.x, -wi.y, wi.z);
             // A photon that red walls have met: the weights are what reflect() leaves, luminance 1.
             let mut red = Rgb::WHITE;
-            let wall = caustix::surface::Reflectance::rgb([0.9, 0.3, 0.0]);
+            let wall = caustix::surface::Reflectance::rgb([0.9, 0.3, 0.0]).unwrap();
             let some = IndependentPoints::new(0, 0);
             assert!((0..99).any(|i| red.reflect(&wall, &mut Coordinates::new(&some, i, true))));
             for (k, start) in [Rgb::WHITE, red].into_iter().enumerate() {
@@ -370,10 +370,10 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
                 for i in 0..n {
                     let mut photon = start;
                     let mut c = Coordinates::new(&points, i, true);
-                    let gone = match t.interact(&arriving(wi), &mut c, &mut photon) {
-                        Outcome::Leaves { direction, .. } => direction != mirrored,
-                        Outcome::BelowHorizon => true,
-                        Outcome::Absorbed => {
+                    let gone = match t.scatter(&arriving(wi), &mut c, &mut photon) {
+                        Event::Leaves { direction, .. } => direction != mirrored,
+                        Event::BelowHorizon => true,
+                        Event::Absorbed => {
                             assert!(!remainder);
                             continue;
                         }
@@ -406,7 +406,7 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
             for i in 0..n {
                 let mut photon = Fixed::white(1);
                 let mut c = Coordinates::new(&points, i, true);
-                assert!(!matches!(t.interact(&arriving(wi), &mut c, &mut photon), Outcome::Absorbed));
+                assert!(!matches!(t.scatter(&arriving(wi), &mut c, &mut photon), Event::Absorbed));
                 for (sum, w) in sums.iter_mut().zip(photon.weight()) {
                     sum[0] += w;
                     sum[1] += w * w;

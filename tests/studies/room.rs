@@ -7,8 +7,6 @@ use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::MaterialKind;
 use caustix::files::scene_toml::read;
 use caustix::geometry::Shape;
 use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure};
@@ -16,11 +14,11 @@ use caustix::report::room as report;
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
-use caustix::surface::Reflectance;
+use caustix::surface::{Lambertian, Material, Mirror, Reflectance};
 
 use crate::support::data::project;
 use crate::support::judge::{SIGNIFICANCE, assert_cells, assert_total, sidak, student_p};
-use crate::support::scenes::{describe, run, scene};
+use crate::support::scenes::{run, scene};
 
 const Y: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
@@ -177,7 +175,7 @@ fn room(reflectance: &str, reflections: u32) -> Scene {
 #[test]
 fn the_room_is_closed_and_has_276_triangles() {
     let file = project().join("scenes/room.toml");
-    let scene = build(&read(file).unwrap()).unwrap();
+    let scene = read(file).unwrap().build().unwrap();
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     assert_eq!(scene.geometry.primitive_count(), 276);
     assert_eq!(scene.receivers.iter().map(|r| r.cells.len()).sum::<usize>(), 276);
@@ -382,15 +380,17 @@ fn what_a_study_needs_is_asked_for() {
 #[test]
 fn colours_and_compare_are_read() {
     let with = |material: &str, rest: &str| {
-        describe(&format!(
-            "[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 0]\nflux_lm = 1\n[material.m]\n{material}\n{rest}"
+        scene(&format!(
+            "[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 3]\nflux_lm = 1\n[material.m]\n{material}\n\
+             [[surface]]\nname = \"ball\"\ntype = \"sphere\"\nmaterial = \"m\"\ncenter = [0, 0, 0]\nradius = 1\n{rest}"
         ))
     };
     let d = with("type = \"lambertian\"\nreflectance = [0.25, 0.5, 1]", "[compare]\nreflections = 0");
-    let expected = Reflectance::rgb([0.25, 0.5, 1.0]);
-    assert_eq!(d.materials[0].kind, MaterialKind::Lambertian { reflectance: expected });
-    assert_eq!(d.compare.unwrap().reflections, 0);
+    let wall = Lambertian::new(Reflectance::rgb([0.25, 0.5, 1.0]).unwrap());
+    assert!(matches!(d.materials()[0], Material::Lambertian(l) if l == wall));
+    assert_eq!(d.compared_reflections, Some(0));
     let d = with("type = \"mirror\"\nreflectance = [1, 0.5, 0]", "");
-    assert_eq!(d.materials[0].kind, MaterialKind::Mirror { reflectance: Reflectance::rgb([1.0, 0.5, 0.0]) });
-    assert_eq!(d.compare, None);
+    let mirror = Mirror::new(Reflectance::rgb([1.0, 0.5, 0.0]).unwrap());
+    assert!(matches!(d.materials()[0], Material::Mirror(m) if m == mirror));
+    assert_eq!(d.compared_reflections, None);
 }

@@ -138,7 +138,7 @@ fn trace<P: Points>(
 /// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics as often as
 /// roulette lets it. Photons of coloured light count as often as their strongest channel outweighs white's.
 fn arrivals(scene: &Scene, reflections: u32) -> u32 {
-    let passes = scene.receivers.iter().any(|r| scene.bsdf(r.surface).is_transparent());
+    let passes = scene.receivers.iter().any(|r| scene.material(r.surface).is_transparent());
     let arrivals = if passes { crate::transport::walk::MAX_EVENTS } else { reflections + 1 };
     let emitters = 0..scene.emitters.as_slice().len();
     let strongest = emitters.flat_map(|e| scene.emitter_colour(e)).fold(1.0, f64::max);

@@ -18,21 +18,18 @@ use glam::{DVec2, DVec3};
 use crate::error::Result;
 use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::{Hit, Side, Whereabouts};
-use crate::scene::Scene;
-use crate::scene::camera::{CameraSpec, Filter};
-use crate::surface::value::Leg;
-use crate::surface::{Bsdf, luminance, luminance_of};
-
-use crate::picture::camera::film;
-use crate::picture::camera::film::Film;
-use crate::picture::camera::filter;
-use crate::picture::camera::pinhole::Pinhole;
-use crate::picture::camera::view::View;
 use crate::picture::photon_map::Channels;
 use crate::picture::photon_map::sink::scattering_surfaces;
-use crate::tally::ReceiverSink;
-use crate::tally::wide_sum::WideSum;
+use crate::scene::Scene;
+use crate::scene::camera::{Camera, Filter};
+use crate::surface::{Leg, Material, luminance, luminance_of};
+use crate::tally::{ReceiverSink, WideSum};
 use crate::transport::{Arrival, Sink};
+
+use super::film::{self, Film};
+use super::filter;
+use super::pinhole::Pinhole;
+use super::view::View;
 
 /// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is large.
 const FRACTION_BITS: i32 = 48;
@@ -71,6 +68,13 @@ impl<const C: usize> SplatMoments<C> {
         Self { sum: vec![[0.0; C]; pixels], square: vec![0.0; pixels] }
     }
 
+    /// R s^2 of the R partial sums of a pixel's luminance; NaN for one replicate.
+    pub fn variance(&self, pixel: usize, replicates: u32) -> f64 {
+        let (r, y) = (f64::from(replicates), luminance_of(&self.sum[pixel]));
+        let spread = r / (r - 1.0) * (self.square[pixel] - y * y / r).max(0.0);
+        if replicates < 2 { f64::NAN } else { spread }
+    }
+
     /// Zeros again.
     pub fn restart(&mut self) {
         self.sum.fill([0.0; C]);
@@ -87,22 +91,14 @@ impl<'s, const C: usize> Splat<'s, C> {
         Film::<C>::memory_bytes(pixels).saturating_add(sums)
     }
 
-    /// Whether a picture of so many columns and rows can be splatted.
-    ///
-    /// # Errors
-    /// One without pixels; one that takes more than [`film::MOST_PICTURE_BYTES`].
-    pub fn check_memory(pixels: [u32; 2]) -> Result<()> {
-        film::check_memory(pixels, Self::memory_bytes(pixels))
-    }
-
     /// Sums at zero for a camera.
     ///
     /// # Errors
-    /// Those of [`Self::check_memory`].
-    pub fn new(scene: &'s Scene, spec: &CameraSpec) -> Result<Self> {
-        Self::check_memory(spec.pixels)?;
+    /// A picture that takes more than [`film::MOST_PICTURE_BYTES`].
+    pub fn new(scene: &'s Scene, spec: &Camera) -> Result<Self> {
+        film::check_memory(spec.pixels, Self::memory_bytes(spec.pixels))?;
         let pixels = u64::from(spec.pixels[0]) * u64::from(spec.pixels[1]);
-        let pinhole = Pinhole::new(spec)?;
+        let pinhole = Pinhole::new(spec);
         // A power of two near the scene's size, so that a scene and the same scene times a power of two agree bit for bit.
         let (low, high) = scene.geometry.bounds();
         let size = (high - low).length().max((spec.position - low).length());
@@ -165,7 +161,7 @@ impl<'s, const C: usize> Splat<'s, C> {
         if left > right || top > bottom {
             return false;
         }
-        let f = value::<C>(self.scene.bsdf(hit.surface), hit, -arrival.direction, wo);
+        let f = value::<C>(self.scene.material(hit.surface), hit, -arrival.direction, wo);
         if f.iter().all(|f| *f <= 0.0) || self.is_hidden(hit, arrival.whereabouts, wo, distance) {
             return false;
         }
@@ -221,7 +217,7 @@ pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64)
 /// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where the pixel's middle looks; 0 if
 /// nothing is there.
 fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
-    let columns = view.spec.pixels[0] as usize;
+    let columns = view.camera.pixels[0] as usize;
     let place = DVec2::new((pixel % columns) as f64 + 0.5, (pixel / columns) as f64 + 0.5);
     let ray = view.pinhole.ray(place);
     let Some(hit) = view.scene.geometry.nearest(ray.origin, ray.direction, &view.start, &mut 0) else {
@@ -230,18 +226,18 @@ fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
     let Some(seen) = view.pinhole.project(hit.position) else { return 0.0 };
     let to_eye = -seen.direction;
     let towards = if to_eye.dot(hit.normal) > 0.0 { hit.normal } else { -hit.normal };
-    let bsdf = view.scene.bsdf(hit.surface);
-    let f = bsdf.value_between(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
-    let h = filter::density(view.spec.filter, [0.0; 2]);
+    let bsdf = view.scene.material(hit.surface);
+    let f = bsdf.eval(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
+    let h = filter::density(view.camera.filter, [0.0; 2]);
     let per_area = to_eye.dot(hit.normal).abs() / (seen.distance_m * seen.distance_m);
     luminance(f) * per_area * seen.pixels_per_sr * h
 }
 
 /// f(wi, wo) by channel, 1/sr; one channel sees white light's luminance.
 #[inline]
-fn value<const C: usize>(bsdf: &Bsdf, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; C] {
+fn value<const C: usize>(bsdf: &Material, hit: &Hit, wi: DVec3, wo: DVec3) -> [f64; C] {
     let arrived = Leg { direction: wi, front: hit.front };
-    let rgb = bsdf.value_between(hit.normal, arrived, Leg::new(wo, hit.normal));
+    let rgb = bsdf.eval(hit.normal, arrived, Leg::new(wo, hit.normal));
     if C == 1 { [luminance(rgb); C] } else { std::array::from_fn(|c| rgb[c]) }
 }
 

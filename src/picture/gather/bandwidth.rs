@@ -13,9 +13,9 @@ use rayon::prelude::*;
 use crate::picture::photon_map::{Photon, PhotonMap};
 use crate::scene::camera::{Bandwidth, FEWEST_NEIGHBOURS, Kernel};
 
-use crate::picture::gather::density::BIAS_PER_DIFFERENCE;
-use crate::picture::gather::footprint::{Footprint, Footprints};
-use crate::picture::gather::kernel::disc_m2;
+use super::BIAS_PER_DIFFERENCE;
+use super::footprint::{Footprint, Footprints};
+use super::kernel::disc_m2;
 
 /// Photons that the choice is made at.
 const POINTS: usize = 1024;

@@ -8,23 +8,15 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, Hit};
+use crate::geometry::Hit;
 use crate::picture::photon_map::PhotonMap;
-use crate::scene::camera::{Bandwidth, CameraSpec, Kernel};
+use crate::scene::camera::{Bandwidth, Kernel};
 
-use crate::picture::gather::bandwidth;
-use crate::picture::gather::bandwidth::Chosen;
-use crate::picture::gather::footprint::Footprints;
-pub use crate::picture::gather::gathered::Gathered;
-use crate::picture::gather::sum::Point;
-use crate::picture::gather::surfaces::BySurface;
-
-/// The second bandwidth, in units of the first: twice the area.
-pub const SECOND: f64 = std::f64::consts::SQRT_2;
-
-/// What the difference between the two bandwidths is multiplied with for the bias of the narrower: exact for a bias that grows
-/// as the radius (at an edge), 1 / (sqrt 2 - 1); too large for one that grows as its square (where the density is smooth), 1.
-pub const BIAS_PER_DIFFERENCE: f64 = 1.0 / (SECOND - 1.0);
+use super::footprint::Footprints;
+use super::gathered::Gathered;
+use super::sum::Point;
+use super::surfaces::BySurface;
+use super::{SECOND, bandwidth};
 
 /// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker: Progressive Photon
 /// Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
@@ -42,13 +34,6 @@ pub struct Choice {
     pub kernel: Kernel,
     /// Replicates of the run.
     pub replicates: u32,
-}
-
-impl Choice {
-    /// As a camera asks for it.
-    pub fn of(camera: &CameraSpec, replicates: u32) -> Self {
-        Self { bandwidth: camera.bandwidth, kernel: camera.kernel, replicates }
-    }
 }
 
 /// Which photons about a point count.
@@ -71,17 +56,11 @@ pub struct Density<'m, const C: usize> {
     photon_lm: f64,
     kernel: Kernel,
     reach: Reach<C>,
-    chosen: Option<Chosen>,
 }
 
 impl<'m, const C: usize> Density<'m, C> {
-    /// A density of this map; `photon_lm` is the flux of one photon, lm.
-    pub fn new(geometry: &'m Geometry, map: &'m PhotonMap<C>, photon_lm: f64, choice: Choice) -> Self {
-        Self::on(Arc::new(Footprints::new(geometry)), map, photon_lm, choice)
-    }
-
-    /// The same on surfaces that another density has prepared ([`Density::footprints`]).
-    pub fn on(
+    /// A density of this map; `photon_lm` is the flux of one photon, lm. [`Bandwidth::Automatic`] is chosen from the map.
+    pub fn new(
         footprints: Arc<Footprints<'m>>,
         map: &'m PhotonMap<C>,
         photon_lm: f64,
@@ -97,37 +76,11 @@ impl<'m, const C: usize> Density<'m, C> {
             Bandwidth::Nearest(k) => Reach::Nearest(k as usize, BySurface::new(&footprints, map, 0.0)),
             Bandwidth::Automatic => {
                 let chosen = bandwidth::choose(&footprints, map, choice.kernel, choice.replicates, 1.0);
-                let choice = Choice { bandwidth: chosen.bandwidth(), ..choice };
-                return Self { chosen: Some(chosen), ..Self::on(footprints, map, photon_lm, choice) };
+                let bandwidth = chosen.bandwidth();
+                return Self::new(footprints, map, photon_lm, Choice { bandwidth, ..choice });
             }
         };
-        Self { footprints, map, photon_lm, kernel: choice.kernel, reach, chosen: None }
-    }
-
-    /// All photons within this radius, m.
-    pub fn fixed(geometry: &'m Geometry, map: &'m PhotonMap<C>, photon_lm: f64, radius_m: f64) -> Self {
-        let choice =
-            Choice { bandwidth: Bandwidth::Radius(radius_m), kernel: Kernel::default(), replicates: 1 };
-        Self::new(geometry, map, photon_lm, choice)
-    }
-
-    /// The surfaces as prepared for this density.
-    pub fn footprints(&self) -> Arc<Footprints<'m>> {
-        Arc::clone(&self.footprints)
-    }
-
-    /// What the automatic bandwidth was chosen by; `None` where the scene names one.
-    pub fn chosen(&self) -> Option<&Chosen> {
-        self.chosen.as_ref()
-    }
-
-    /// The (first) radius, m; `None` for k nearest.
-    pub fn radius_m(&self) -> Option<f64> {
-        match &self.reach {
-            Reach::Radii(radii) => radii.first().copied(),
-            Reach::AtLeast(radius_m, ..) => Some(*radius_m),
-            Reach::Nearest(..) => None,
-        }
+        Self { footprints, map, photon_lm, kernel: choice.kernel, reach }
     }
 
     /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel, arrived on the

@@ -11,7 +11,7 @@ use glam::DVec3;
 use crate::geometry::{Geometry, Hit, Paraboloid, Rectangle, Shape, Sphere};
 use crate::scene::camera::Kernel;
 
-use crate::picture::gather::faces::{FaceTree, LEAST_COSINE};
+use super::faces::{FaceTree, LEAST_COSINE};
 
 /// The surfaces of a scene as density estimation sees them. What a mesh needs is made when it is first asked for.
 #[derive(Debug)]

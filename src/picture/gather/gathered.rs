@@ -3,8 +3,7 @@
 use crate::geometry::Hit;
 use crate::surface::luminance_of;
 
-use crate::picture::gather::density::BIAS_PER_DIFFERENCE;
-use crate::picture::gather::surfaces::Neighbour;
+use super::surfaces::Room;
 
 /// What is gathered for one pixel: sums over its samples. `C` channels: 1 or 3.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,8 +16,8 @@ pub struct Gathered<const C: usize> {
     pub by_replicate: Vec<f64>,
     /// Standard error (Y) owed to places with fewer than ten photons, whose spread says nothing: that of (photons + 1).
     pub sparse: f64,
-    /// Bias (Y) that no bandwidth tells: that of the factor k - 1 of k nearest under points that are not independent, at most
-    /// that of k - 1/2.
+    /// Upper bound on the k-NN bias in Y: (k - 1) / (pi r^2) is unbiased only for independent photons; for QMC points the
+    /// factor lies between k - 1 and k - 1/2.
     pub nearest_bias: f64,
     /// Room for the gather in hand.
     pub(crate) room: Room,
@@ -28,16 +27,6 @@ pub struct Gathered<const C: usize> {
     pub(crate) sought_m: f64,
     /// What was gathered evenly since the last [`Self::clear`].
     pub(crate) places: Places<C>,
-}
-
-/// What a gather works with, kept so that it need not be allocated again.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Room {
-    /// Kernel heights (1/m2) at both bandwidths by replicate.
-    pub heights: Vec<[f64; 2]>,
-    /// Neighbours found on one side, and all.
-    pub found: Vec<(f64, u32)>,
-    pub neighbours: Vec<Neighbour>,
 }
 
 impl<const C: usize> Gathered<C> {
@@ -80,26 +69,6 @@ impl<const C: usize> Gathered<C> {
         }
         self.sparse += luminance_of(&weight).abs() * found.sparse;
         self.nearest_bias += of_luminance * found.nearest_bias;
-    }
-
-    /// Estimated size of the bias of `value`'s luminance, cd/m2: [`BIAS_PER_DIFFERENCE`] times what the second bandwidth
-    /// makes of it.
-    pub fn bias(&self) -> f64 {
-        (luminance_of(&self.second) - luminance_of(&self.value)).abs() * BIAS_PER_DIFFERENCE
-            + self.nearest_bias
-    }
-
-    /// Standard error of `value`'s luminance as the photons have it, given the bandwidth, cd/m2: from the spread of the
-    /// replicates, and no less than that of (photons + 1) where there were hardly any. `None` for one replicate.
-    pub fn standard_error(&self) -> Option<f64> {
-        let n = self.by_replicate.len();
-        if n < 2 {
-            return None;
-        }
-        let mean = self.by_replicate.iter().sum::<f64>() / n as f64;
-        let squares = self.by_replicate.iter().map(|s| (s - mean) * (s - mean)).sum::<f64>();
-        let variance = n as f64 / (n - 1) as f64 * squares;
-        Some((variance + self.sparse * self.sparse).sqrt())
     }
 }
 

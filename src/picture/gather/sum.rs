@@ -2,17 +2,17 @@
 
 use glam::DVec3;
 
+use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::Hit;
 use crate::picture::photon_map::{Photon, PhotonMap};
 use crate::scene::camera::Kernel;
 use crate::surface::luminance_of;
 
-use crate::estimate::replicates::FEWEST_HITS;
-use crate::picture::gather::density::SECOND;
-use crate::picture::gather::footprint::Footprint;
-use crate::picture::gather::gathered::Gathered;
-use crate::picture::gather::kernel::disc_m2;
-use crate::picture::gather::surfaces::{BySurface, Wanted};
+use super::SECOND;
+use super::footprint::Footprint;
+use super::gathered::Gathered;
+use super::kernel::disc_m2;
+use super::surfaces::{BySurface, Wanted};
 
 /// A point that light is gathered at. `F` is the surface's BSDF towards the eye: (direction of travel, arrived on the front) ->
 /// 1/sr.

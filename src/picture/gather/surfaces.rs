@@ -4,8 +4,7 @@
 
 use crate::picture::photon_map::{Photon, PhotonMap, by_distance};
 
-use crate::picture::gather::footprint::{Footprint, Footprints};
-use crate::picture::gather::gathered::Room;
+use super::footprint::{Footprint, Footprints};
 
 /// The photons of one side of a surface.
 #[derive(Debug)]
@@ -28,6 +27,16 @@ pub(crate) struct Neighbour {
     pub d2: f64,
     front: bool,
     place: u32,
+}
+
+/// What a gather works with, kept so that it need not be allocated again.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Room {
+    /// Kernel heights (1/m2) at both bandwidths by replicate.
+    pub heights: Vec<[f64; 2]>,
+    /// Neighbours found on one side, and all.
+    pub found: Vec<(f64, u32)>,
+    pub neighbours: Vec<Neighbour>,
 }
 
 impl Neighbour {

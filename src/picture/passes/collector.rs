@@ -9,18 +9,16 @@ use std::ops::Range;
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::picture::photon_map::sink::Kept;
-use crate::picture::photon_map::{Channels, Photon, PhotonMap, PhotonStore, SavedMap};
+use crate::picture::photon_map::{Channels, Kept, Photon, PhotonMap, PhotonStore, SavedMap};
+use crate::picture::summary::{Cost, PictureSummary};
+use crate::picture::{Picture, Watch, hash_of_photons, settings_of};
+use crate::run::{Plan, Tracer};
 use crate::scene::Scene;
-use crate::scene::camera::CameraSpec;
+use crate::scene::camera::{Camera, Method};
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
-use crate::picture::passes::eye::{Eye, Seeing, Seen, Settled};
-use crate::picture::summary::{Chosen, Cost, PictureSummary};
-use crate::picture::{Picture, Watch};
-use crate::run::plan::Plan;
-use crate::run::tracer::Tracer;
+use super::eye::{Batch, Eye, Seeing};
 
 /// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
 const fn bytes_of_photon<const C: usize>() -> u64 {
@@ -28,8 +26,8 @@ const fn bytes_of_photon<const C: usize>() -> u64 {
 }
 
 /// Most photons that the camera has memory for at a time.
-pub(crate) fn capacity<const C: usize>(spec: &CameraSpec) -> usize {
-    usize::try_from(spec.photon_memory_bytes / bytes_of_photon::<C>()).unwrap_or(usize::MAX).max(1)
+pub(crate) fn capacity<const C: usize>(camera: &Camera) -> usize {
+    usize::try_from(camera.photon_memory_bytes / bytes_of_photon::<C>()).unwrap_or(usize::MAX).max(1)
 }
 
 /// What photons may leave above what is foretold: an eighth and some, so that few ranges are traced twice.
@@ -59,7 +57,6 @@ pub(crate) struct Collector<'a, const C: usize> {
     replicates: u32,
     /// Photons of the run as planned.
     planned: u64,
-    bandwidths: [Option<Settled>; 2],
     passes: u32,
     /// Whether the last pass was of a part of a replicate that is to go on.
     open: bool,
@@ -75,7 +72,7 @@ impl<'a, const C: usize> Collector<'a, C> {
     /// A camera that cannot see, or whose pixels need too much memory.
     pub(crate) fn new(
         scene: &'a Scene,
-        spec: &'a CameraSpec,
+        camera: &'a Camera,
         plan: &Plan,
         keep: bool,
         watch: Watch<'a>,
@@ -84,9 +81,9 @@ impl<'a, const C: usize> Collector<'a, C> {
             scene,
             plan: *plan,
             watch,
-            eye: Eye::new(scene, spec, plan, watch)?,
+            eye: Eye::new(scene, camera, plan, watch)?,
             store: PhotonStore::new(scene),
-            capacity: capacity::<C>(spec),
+            capacity: capacity::<C>(camera),
             held: Kept::default(),
             held_photons: 0,
             traced: 0,
@@ -95,7 +92,6 @@ impl<'a, const C: usize> Collector<'a, C> {
             whole: true,
             replicates: 0,
             planned: plan.photons(),
-            bandwidths: [None; 2],
             passes: 0,
             open: false,
             keep,
@@ -115,7 +111,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         carried: T,
     ) -> Result<Traced> {
         let mut all = Traced::new(self.scene);
-        let (n, from) = (self.plan.photons_per_replicate, tracer.photons());
+        let (n, from) = (self.plan.photons_per_replicate(), tracer.photons());
         // A pass is of whole replicates or of a part of one: the camera's error comes from whole ones.
         if tracer.replicate() > 0 && from == 0 && self.foretold(n) > self.room() {
             self.pass_unless_empty()?;
@@ -203,7 +199,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             self.held_of.start = replicate;
         }
         self.held_of.end = replicate + 1;
-        self.whole = to == self.plan.photons_per_replicate;
+        self.whole = to == self.plan.photons_per_replicate();
         self.replicates = self.replicates.max(replicate + 1);
     }
 
@@ -270,19 +266,19 @@ impl<'a, const C: usize> Collector<'a, C> {
         let in_pass = std::mem::take(&mut self.held_photons) as f64;
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
         let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
-        let part = part * photon_lm / exact_lm;
-        let of = std::mem::replace(&mut self.held_of, 0..0);
-        let [caustic, diffuse] = std::mem::take(&mut self.held);
-        let replicates = of.len() as u32;
-        let maps = [self.map_of(0, caustic, part, replicates), self.map_of(1, diffuse, part, replicates)];
-        let (finishes, bandwidths) = (self.whole, self.bandwidths);
-        let seen = Seen { maps: &maps, photon_lm, bandwidths, part, replicates: of, finishes, last };
-        self.eye.add(&seen)?;
-        self.open = !finishes;
+        let maps = self.eye.add(Batch {
+            photons: std::mem::take(&mut self.held),
+            frame: self.store.frame(),
+            photon_lm,
+            part: part * photon_lm / exact_lm,
+            replicates: std::mem::replace(&mut self.held_of, 0..0),
+            finishes: self.whole,
+            last,
+        })?;
+        self.open = !self.whole;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
-        let [caustic, diffuse] = &maps;
-        Ok(self.keep.then(|| [caustic.photons(), diffuse.photons()].concat()))
+        Ok(self.keep.then(|| maps.each_ref().map(PhotonMap::photons).concat()))
     }
 
     /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions, not a sample of
@@ -295,28 +291,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.held = Kept::default();
         (self.held_photons, self.held_of) = (0, 0..0);
         self.replicates -= 1;
-        self.traced = u64::from(self.replicates) * self.plan.photons_per_replicate;
+        self.traced = u64::from(self.replicates) * self.plan.photons_per_replicate();
         (self.whole, self.open) = (true, false);
-    }
-
-    /// The map of photons, `part` of all and of so many replicates, sorted for the bandwidth of their density, which they settle
-    /// if nothing has.
-    fn map_of(
-        &mut self,
-        density: usize,
-        blocks: Vec<Vec<Photon<C>>>,
-        part: f64,
-        replicates: u32,
-    ) -> PhotonMap<C> {
-        let settled = self.bandwidths[density];
-        let radius_m = self.eye.radius_to_sort_for_m(settled.as_ref());
-        let map = PhotonMap::build(joined(blocks), self.store.frame(), radius_m);
-        if settled.is_some() {
-            return map;
-        }
-        self.bandwidths[density] = self.eye.choose(&map, part, replicates);
-        let wanted_m = self.eye.radius_to_sort_for_m(self.bandwidths[density].as_ref());
-        if wanted_m > 0.0 && wanted_m != radius_m { map.rebuilt(wanted_m) } else { map }
     }
 
     /// The picture of all that was accepted.
@@ -326,24 +302,23 @@ impl<'a, const C: usize> Collector<'a, C> {
     pub(crate) fn finish(mut self) -> Result<Picture<C>> {
         let kept = self.pass(true)?;
         let photons = kept.map(|photons| SavedMap {
-            scene_hash: crate::picture::hash_of_photons(self.scene, &self.plan),
-            settings: crate::picture::settings_of(&self.plan),
+            scene_hash: hash_of_photons(self.scene, &self.plan),
+            settings: settings_of(&self.plan),
             photons_traced: self.traced,
             replicates: self.replicates,
             photon_lm: self.scene.emitters.flux_lm() / self.traced.max(1) as f64,
             frame: self.store.frame(),
             photons,
         });
-        let chosen = self.bandwidths.map(|b| b.map_or(Chosen::default(), |settled| settled.chosen));
-        let Seeing { film, killed, unseen } = self.eye.finish();
+        let Seeing { film, killed, unseen, bandwidths } = self.eye.finish();
         let cost = Cost::of(&film);
         let summary = PictureSummary {
-            method: crate::scene::camera::Method::Map,
+            method: Method::Map,
             photons: self.traced,
             replicates: self.replicates,
             photons_kept: self.kept,
             passes: self.passes,
-            bandwidth: Some(chosen),
+            bandwidth: Some(bandwidths),
             eye_paths_killed: killed,
             splats_cut: 0,
             pixels_unseen: unseen,
@@ -352,13 +327,4 @@ impl<'a, const C: usize> Collector<'a, C> {
         };
         Ok(Picture { film, summary, photons })
     }
-}
-
-/// Blocks one after another; each is dropped when it is copied.
-fn joined<const C: usize>(blocks: Vec<Vec<Photon<C>>>) -> Vec<Photon<C>> {
-    let mut all = Vec::with_capacity(blocks.iter().map(Vec::len).sum());
-    for block in blocks {
-        all.extend_from_slice(&block);
-    }
-    all
 }

@@ -8,7 +8,7 @@
 //! guide of 12 bytes for every 64 of them. Empty cells cost nothing, so neither stray photons far away nor a radius that is
 //! small against the scene do; a search for another radius than the map was built for gives the same answer, slower.
 
-pub mod file;
+mod saved;
 mod order;
 pub mod record;
 pub mod sink;
@@ -16,10 +16,10 @@ pub mod sink;
 use glam::DVec3;
 use rayon::prelude::*;
 
-pub use file::SavedMap;
 use order::{Key, Order};
 pub use record::{Frame, Photon};
-pub use sink::{Channels, PhotonSink, PhotonStore};
+pub use saved::SavedMap;
+pub use sink::{Channels, Kept, PhotonStore};
 
 /// Photons for which the guide has one entry.
 const BLOCK: usize = 64;
@@ -195,13 +195,6 @@ impl<const C: usize> PhotonMap<C> {
             found.select_nth_unstable_by_key(last, by_distance);
             found.truncate(last + 1);
         }
-    }
-
-    /// Bytes held.
-    pub fn memory_bytes(&self) -> usize {
-        self.photons.capacity() * size_of::<Photon<C>>()
-            + self.guide.0.capacity() * size_of::<u64>()
-            + self.guide.1.capacity() * size_of::<u32>()
     }
 
     /// The first photon from place `from` on that does not stand before `key`.

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::geometry::Geometry;
 use crate::scene::Scene;
-use crate::surface::{Bsdf, Grey, Rgb, Throughput};
+use crate::surface::{Grey, Material, Rgb, Throughput};
 use crate::transport::{Arrival, Sink};
 
 use crate::picture::photon_map::record::{FRONT, Frame, Photon, SCATTERED, pack};
@@ -33,7 +33,7 @@ impl Channels<3> for Rgb {
 
 /// Which surfaces of a scene scatter: those where photons are kept, and where the eye's path ends.
 pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
-    scene.bsdfs().iter().map(Bsdf::scatters).collect()
+    scene.materials().iter().map(Material::scatters).collect()
 }
 
 /// Photons that a handle collects before it gives them to the store.
@@ -79,16 +79,6 @@ impl<const C: usize> PhotonStore<C> {
     /// Bounds the number of photons it takes from here on until [`Self::take`], give or take two blocks a thread.
     pub fn limit(&mut self, most: usize) {
         self.most = most;
-    }
-
-    /// Photons in it.
-    pub fn len(&self) -> usize {
-        self.kept.load(Ordering::Relaxed)
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair sample and is

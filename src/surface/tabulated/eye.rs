@@ -1,26 +1,37 @@
-//! A table as the eye sees it: its value between two directions, and what it leaves of the light beyond.
+//! A table under the contract of all materials: what tells it apart from others, its value between two directions, and what
+//! it leaves of the light beyond.
+
+use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::sample::coordinates::Chooser;
 use crate::scattering::Quantity;
 use crate::surface::tabulated::arrival::Arrival;
 use crate::surface::tabulated::{Face, Tabulated};
-use crate::surface::value::Leg;
+use crate::surface::{Event, Incidence, Kind, Leg, Model, Throughput, Way, Ways};
+use crate::units::LUMINANCE_OF_RGB;
 
-/// A way on for an eye path at a surface that leaves a part of the light as if it were a mirror or not there.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Beyond {
-    /// Where the eye path goes on to; unit.
-    pub direction: DVec3,
-    /// Whether it crosses the surface.
-    pub through: bool,
-    /// Part of the luminance from there that goes on to the eye, by channel.
-    pub part: [f64; 3],
-}
+impl Model for Tabulated {
+    #[inline]
+    fn kind(&self) -> Kind {
+        Kind::Scattering
+    }
 
-impl Tabulated {
-    /// f, 1/sr, by channel, of light from wi into wo on a facet with this outward normal.
-    pub fn value(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
+    fn requires(&self) -> &'static [&'static str] {
+        &["tabulated scattering"]
+    }
+
+    fn is_coloured(&self) -> bool {
+        self.is_coloured()
+    }
+
+    #[inline]
+    fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, carried: &mut T) -> Event {
+        self.scatter(at, chooser, carried)
+    }
+
+    fn eval(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
         let cos_o = wo.direction.dot(outward).abs();
         if cos_o == 0.0 {
             return [0.0; 3];
@@ -31,29 +42,47 @@ impl Tabulated {
         lobes.eval_cos(quantity, wo.direction).map(|g| g / cos_o)
     }
 
-    /// Where an eye path that arrives along `direction` on the side `front` goes on to: the light that the table leaves comes
-    /// from there. Mirrored from the side of the eye, and straight through from the other.
-    pub fn beyond(&self, outward: DVec3, direction: DVec3, front: bool) -> [Option<Beyond>; 2] {
-        [Quantity::Reflection, Quantity::Transmission].map(|quantity| {
-            let through = quantity == Quantity::Transmission;
-            let lit_front = front != through;
-            let face = self.face(lit_front);
-            if face.rest != Some(quantity) {
+    /// Mirrored from the side of the eye, and straight through from the other; both only where the two sides of a table
+    /// differ.
+    fn specular(&self, at: &Incidence) -> Ways {
+        let outward = at.outward();
+        let way = |quantity| {
+            let lit_front = at.front != (quantity == Quantity::Transmission);
+            if self.face(lit_front).rest != Some(quantity) {
                 return None;
             }
-            let direction = if through {
-                direction
-            } else {
-                let (_, arrival) = self.arriving(outward, Leg { direction: -direction, front });
-                arrival.specular(Quantity::Reflection).normalize()
+            let direction = match quantity {
+                Quantity::Transmission => at.direction,
+                Quantity::Reflection => {
+                    let (_, arrival) =
+                        self.arriving(outward, Leg { direction: -at.direction, front: at.front });
+                    arrival.specular(Quantity::Reflection).normalize()
+                }
             };
             // Light of that side, on its way here.
             let (face, arrival) = self.arriving(outward, Leg { direction, front: lit_front });
             let albedo = self.lobes(face, &arrival, || self.along(outward)).albedo(face.coloured);
-            Some(Beyond { direction, through, part: albedo.map(|a| (1.0 - a).max(0.0)) })
-        })
+            Some(Way { direction, part: albedo.map(|a| (1.0 - a).max(0.0)), luminance_factor: 1.0 })
+        };
+        Ways { mirrored: way(Quantity::Reflection), through: way(Quantity::Transmission), lossless: false }
     }
 
+    fn proposals(&self, at: &Incidence) -> [f64; 2] {
+        let outward = at.outward();
+        let (face, arrival) = self.arriving(outward, Leg { direction: -at.direction, front: at.front });
+        let lobes = self.lobes(face, &arrival, || self.along(outward));
+        lobes.proposals(face.coloured.then_some(LUMINANCE_OF_RGB)).into()
+    }
+
+    fn table_bytes(&self) -> Option<(usize, usize)> {
+        Some((
+            Arc::as_ptr(&self.layers).addr(),
+            self.layers.iter().map(|layer| layer.grids.memory_bytes()).sum(),
+        ))
+    }
+}
+
+impl Tabulated {
     #[inline]
     fn arriving(&self, outward: DVec3, wi: Leg) -> (&Face, Arrival) {
         let normal = if wi.front { outward } else { -outward };

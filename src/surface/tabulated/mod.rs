@@ -32,7 +32,7 @@ use crate::math::solve::Solver;
 use crate::sample::coordinates::Chooser;
 use crate::scattering::{Quantity, ScatterTable};
 use crate::surface::throughput::Fate;
-use crate::surface::{Incidence, Outcome, Reference, Reflectance, Throughput};
+use crate::surface::{Event, Incidence, Reference, Reflectance, Throughput};
 use crate::units::LUMINANCE_OF_RGB;
 
 use arrival::Arrival;
@@ -161,16 +161,6 @@ impl Tabulated {
         self.face(from_front).layers[1].is_some()
     }
 
-    /// Bytes held by the tables, which copies share.
-    pub fn memory_bytes(&self) -> usize {
-        self.layers.iter().map(|layer| layer.grids.memory_bytes()).sum()
-    }
-
-    /// Whether both are copies of one surface, which share its table.
-    pub fn shares_table_with(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.layers, &other.layers)
-    }
-
     fn face(&self, from_front: bool) -> &Face {
         &self.faces[usize::from(!from_front)]
     }
@@ -200,38 +190,38 @@ impl Tabulated {
 
     /// Scatters what the throughput lets be scattered. (Kept out of the walk, whose other surfaces need few registers.)
     #[inline(never)]
-    pub fn interact<C: Chooser, T: Throughput>(
+    pub fn scatter<C: Chooser, T: Throughput>(
         &self,
         at: &Incidence,
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         let face = self.face(at.front);
         let along = || self.along(if at.front { at.facet } else { -at.facet });
         let arrival = Arrival::new(-at.direction, at.facet, along);
         let angles = Self::angles(face, &arrival, along);
         if face.coloured {
-            self.interact_coloured(face, &arrival, angles, chooser, carried)
+            self.scatter_coloured(face, &arrival, angles, chooser, carried)
         } else {
-            self.interact_grey(face, &arrival, angles, chooser, carried)
+            self.scatter_grey(face, &arrival, angles, chooser, carried)
         }
     }
 
     #[inline(always)]
-    fn interact_grey<C: Chooser, T: Throughput>(
+    fn scatter_grey<C: Chooser, T: Throughput>(
         &self,
         face: &Face,
         arrival: &Arrival,
         (theta, phi): (f64, f64),
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         let layers = face.layers.map(|k| k.map(|k| &self.layers[k]));
         let mut branches = Branches::none();
         let albedo = branches.add_grey(layers, theta, phi);
         let fate = if face.rest.is_some() {
             carried.scatter([albedo; 3], true, chooser)
-        } else if carried.reflect(&Reflectance::grey(albedo), chooser) {
+        } else if carried.reflect(&Reflectance::of_table(albedo), chooser) {
             Fate::Scattered(LUMINANCE_OF_RGB)
         } else {
             Fate::Ends
@@ -242,21 +232,21 @@ impl Tabulated {
         match branches.decide(chooser) {
             Some(branch) => match layers[branch.lobe as usize] {
                 Some(layer) => outcome(&branch::leave(arrival, layer, branch.slice as usize, chooser).0),
-                None => Outcome::Absorbed,
+                None => Event::Absorbed,
             },
-            None => Outcome::Absorbed,
+            None => Event::Absorbed,
         }
     }
 
     #[inline(always)]
-    fn interact_coloured<C: Chooser, T: Throughput>(
+    fn scatter_coloured<C: Chooser, T: Throughput>(
         &self,
         face: &Face,
         arrival: &Arrival,
         (theta, phi): (f64, f64),
         chooser: &mut C,
         carried: &mut T,
-    ) -> Outcome {
+    ) -> Event {
         let layer = |k: Option<usize>| k.map(|k| (&self.layers[k], self.layers[k].mix(theta, phi)));
         let lobes = Lobes { arrival, lobes: face.layers.map(layer) };
         let albedo = lobes.albedo(true);
@@ -265,7 +255,7 @@ impl Tabulated {
             return unscattered(face, arrival, fate);
         };
         let Some(left) = lobes.sample(Some(shares), chooser) else {
-            return Outcome::Absorbed;
+            return Event::Absorbed;
         };
         let part = if face.rest.is_some() { 1.0 } else { crate::surface::reflectance::luminance(albedo) };
         carried.scattered(left.values, part);
@@ -274,35 +264,24 @@ impl Tabulated {
 }
 
 /// What becomes of a photon that the table does not scatter.
-fn unscattered(face: &Face, arrival: &Arrival, fate: Fate) -> Outcome {
+fn unscattered(face: &Face, arrival: &Arrival, fate: Fate) -> Event {
     match (fate, face.rest) {
         (Fate::GoesOn, Some(quantity)) => {
             let direction = arrival.specular(quantity).normalize();
-            Outcome::Leaves { direction, through: quantity == Quantity::Transmission, corrected: false }
+            Event::Leaves { direction, through: quantity == Quantity::Transmission, corrected: false }
         }
-        _ => Outcome::Absorbed,
+        _ => Event::Absorbed,
     }
 }
 
 /// What becomes of one that it scatters.
 #[inline(always)]
-fn outcome(left: &Left) -> Outcome {
+fn outcome(left: &Left) -> Event {
     if left.below_horizon {
-        return Outcome::BelowHorizon;
+        return Event::BelowHorizon;
     }
     let through = left.quantity == Quantity::Transmission;
-    Outcome::Leaves { direction: left.wo.normalize(), through, corrected: false }
-}
-
-impl Tabulated {
-    /// What a photon of white light at a surface costs by rejection, on average over whether it is scattered: proposals (inside
-    /// a cell, against a slice's largest value).
-    pub fn proposals(&self, at: &Incidence) -> (f64, f64) {
-        let face = self.face(at.front);
-        let along = || self.along(if at.front { at.facet } else { -at.facet });
-        let arrival = Arrival::new(-at.direction, at.facet, along);
-        self.lobes(face, &arrival, along).proposals(face.coloured.then_some(LUMINANCE_OF_RGB))
-    }
+    Event::Leaves { direction: left.wo.normalize(), through, corrected: false }
 }
 
 /// The same in a local frame: z the normal on the side that light comes from, x the table's reference direction on it. wi is

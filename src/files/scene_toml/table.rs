@@ -8,21 +8,23 @@ use glam::DVec3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::{Diagnostic, Kind};
-use crate::files::scene_toml::description::{Place, Placed};
-use crate::files::scene_toml::document::Document;
-use crate::files::scene_toml::suggest;
+use super::document::Document;
+use super::suggest;
+use crate::error::invalid::{Interval, Invalid};
+use crate::error::{Diagnostic, Kind, Place};
+use crate::math::frame::unit;
 
-/// A range of numbers and the words for it.
-#[derive(Debug, Clone, Copy)]
-pub struct Interval {
-    /// Least allowed value.
-    pub low: f64,
-    /// Greatest allowed value.
-    pub high: f64,
-    /// What is required, as a clause: `a length from 1e-9 to 1e9 m`.
-    pub words: &'static str,
+/// A value and where it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands in the scene file.
+    pub place: Place,
 }
+
+/// Components of directions.
+pub(super) const DIRECTION: Interval = Interval { low: -1e9, high: 1e9, words: "a number from -1e9 to 1e9" };
 
 type Value<'t> = &'t Spanned<DeValue<'t>>;
 
@@ -92,6 +94,15 @@ impl<'t, 'd> Table<'t, 'd> {
         self.document.error_at(self.document.place(value.span().start), kind, found, required);
     }
 
+    /// What a constructor made of the values; what it refused is an error at the key that it names.
+    pub fn accept<T>(&self, made: Result<T, Invalid>) -> Option<T> {
+        made.map_err(|e| match self.entries.get(e.what()) {
+            Some(value) => self.error_in(e.what(), value, e.kind(), e.required()),
+            None => self.document.error_at(self.place, e.kind(), e.found(), e.required()),
+        })
+        .ok()
+    }
+
     fn missing(&self, key: &str, required: impl Into<String>) {
         let found = format!("{} without `{key}`", self.what);
         self.document.error_at(self.place, Kind::Missing, found, format!("{key} = {}", required.into()));
@@ -124,6 +135,7 @@ impl<'t, 'd> Table<'t, 'd> {
             self.error(key, Kind::Range, REQUIRED);
             return None;
         }
+        self.document.names(&path);
         Some(path)
     }
 
@@ -161,13 +173,18 @@ impl<'t, 'd> Table<'t, 'd> {
         self.number_in(key, value, interval)
     }
 
+    /// The same, absent: an error.
+    pub fn needed_number(&mut self, key: &'static str, interval: &Interval) -> Option<f64> {
+        let number = self.number(key, interval);
+        self.require(key, number, interval.words)
+    }
+
     fn number_in(&self, label: &str, value: Value<'t>, interval: &Interval) -> Option<f64> {
         let Some(number) = number_of(value.get_ref()) else {
             self.error_in(label, value, Kind::Syntax, interval.words);
             return None;
         };
-        // Written so that NaN is outside.
-        let inside = number >= interval.low && number <= interval.high;
+        let inside = interval.contains(number);
         if !inside {
             self.error_in(label, value, Kind::Range, interval.words);
         }
@@ -204,9 +221,28 @@ impl<'t, 'd> Table<'t, 'd> {
     }
 
     /// A vector `[x, y, z]` whose components lie in this interval.
-    pub fn vector(&mut self, key: &'static str, interval: &Interval) -> Option<Placed<DVec3>> {
-        let vector = self.numbers::<3>(key, interval)?;
-        Some(Placed { value: DVec3::from_array(vector), place: self.place_of(key)? })
+    pub fn vector(&mut self, key: &'static str, interval: &Interval) -> Option<DVec3> {
+        self.numbers::<3>(key, interval).map(DVec3::from_array)
+    }
+
+    /// The same, absent: an error; `words` are for a message.
+    pub fn needed_vector(&mut self, key: &'static str, interval: &Interval, words: &str) -> Option<DVec3> {
+        let vector = self.vector(key, interval);
+        self.require(key, vector, words)
+    }
+
+    /// A direction that is not zero, of length 1; `default` where the key is absent, an error without one.
+    pub fn direction(&mut self, key: &'static str, default: Option<DVec3>) -> Option<DVec3> {
+        const REQUIRED: &str = "a direction [x, y, z] that is not zero";
+        let vector = self.vector(key, &DIRECTION);
+        if vector.is_none() && self.place_of(key).is_none() && default.is_some() {
+            return default;
+        }
+        let unit = unit(self.require(key, vector, REQUIRED)?);
+        if unit.is_none() {
+            self.error(key, Kind::Range, REQUIRED);
+        }
+        unit
     }
 
     /// A number for all three components, or a vector.
@@ -224,10 +260,9 @@ impl<'t, 'd> Table<'t, 'd> {
     }
 
     /// A whole number in this range.
-    pub fn integer(&mut self, key: &'static str, low: u64, high: u64, words: &str) -> Option<Placed<u64>> {
+    pub fn integer(&mut self, key: &'static str, low: u64, high: u64, words: &str) -> Option<u64> {
         let value = self.take(key)?;
-        let number = self.integer_in(key, value, low, high, words)?;
-        Some(Placed { value: number, place: self.document.place(value.span().start) })
+        self.integer_in(key, value, low, high, words)
     }
 
     fn integer_in(&self, label: &str, value: Value<'t>, low: u64, high: u64, words: &str) -> Option<u64> {
@@ -271,8 +306,8 @@ impl<'t, 'd> Table<'t, 'd> {
         self.entries.get(key).is_some_and(|value| value.get_ref().is_str())
     }
 
-    /// A count as [`crate::files::scene_toml::count::parse_count`] reads it: a number, or a text.
-    pub fn count(&mut self, key: &'static str) -> Option<Placed<u64>> {
+    /// A count as [`super::count::parse_count`] reads it: a number, or a text.
+    pub fn count(&mut self, key: &'static str) -> Option<u64> {
         let value = self.take(key)?;
         let text = match value.get_ref() {
             DeValue::Integer(integer) if integer.radix() != 10 => {
@@ -285,8 +320,8 @@ impl<'t, 'd> Table<'t, 'd> {
             DeValue::String(text) => text.to_string(),
             _ => String::new(),
         };
-        match crate::files::scene_toml::count::parse_count(&text) {
-            Ok(count) => Some(Placed { value: count, place: self.document.place(value.span().start) }),
+        match super::count::parse_count(&text) {
+            Ok(count) => Some(count),
             Err(error) => {
                 self.error_in(key, value, error.kind(), error.required());
                 None
