@@ -4,7 +4,7 @@
 //! has photons with weights; only one with a camera keeps photons, and only where the camera makes a map of them. Nothing that a
 //! scene can name needs wavelengths, so there are none.
 
-use crate::emitter::Emitter;
+use crate::emitter::Emits;
 use crate::geometry::Shape;
 use crate::surface::{Kind, Material, REQUIREMENTS};
 
@@ -16,17 +16,15 @@ use super::receiver::Cells;
 pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let emitters = scene.emitters.as_slice();
     let surfaces = scene.geometry.surfaces();
-    let emitter = |test: fn(&Emitter) -> bool| emitters.iter().any(test);
     let shape = |test: fn(&Shape) -> bool| surfaces.iter().any(|s| test(&s.shape));
     let cells = |test: fn(&Cells) -> bool| scene.receivers.iter().any(|r| test(&r.cells));
     let materials = scene.materials();
     let specular = materials.iter().any(|m| m.kind() == Kind::Specular);
     let words: Vec<&str> = materials.iter().flat_map(Material::requires).copied().collect();
+    let mut emission: Vec<(u8, &str)> = emitters.iter().map(|e| e.kind().requires).collect();
+    emission.sort_unstable();
+    emission.dedup();
     let of_emitters_and_shapes = [
-        ("photometric table", emitter(|e| matches!(e, Emitter::Photometric(_)))),
-        ("isotropic emission", emitter(|e| matches!(e, Emitter::Isotropic(_)))),
-        ("collimated emission", emitter(|e| matches!(e, Emitter::Collimated(_)))),
-        ("panel emission", emitter(|e| matches!(e, Emitter::Panel(_)))),
         ("choice of emitter", emitters.len() > 1),
         ("triangles", shape(|s| matches!(s, Shape::Mesh(_) | Shape::Rectangle(_)))),
         ("exact shapes", shape(|s| matches!(s, Shape::Sphere(_) | Shape::Paraboloid(_)))),
@@ -40,6 +38,7 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("camera", scene.camera.is_some()),
         ("stored photons", scene.camera.as_ref().is_some_and(|c| c.method == Method::Map)),
     ];
-    let all = of_emitters_and_shapes.into_iter().chain(of_materials).chain(of_the_rest);
-    all.filter_map(|(word, required)| required.then_some(word)).collect()
+    let others = of_emitters_and_shapes.into_iter().chain(of_materials).chain(of_the_rest);
+    let others = others.filter_map(|(word, required)| required.then_some(word));
+    emission.into_iter().map(|(_, word)| word).chain(others).collect()
 }

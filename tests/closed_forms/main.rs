@@ -8,6 +8,7 @@ mod coverage;
 mod determinism;
 mod diffuse_sheet;
 mod direct;
+mod disc;
 mod discontinuous;
 mod emitter_colour;
 mod interrupted;

@@ -3,7 +3,6 @@
 use std::sync::atomic::AtomicBool;
 
 use caustix::error::Kind;
-use caustix::files::exr::{OwnedData, read_maps};
 use caustix::picture::camera::Film;
 use caustix::picture::{AnyPicture, Picture, trace_picture};
 use caustix::scene::Scene;
@@ -11,6 +10,7 @@ use caustix::scene::camera::{Bandwidth, CameraSpec, Method};
 use caustix::surface::{Dielectric, Material, Mirror, Reflectance};
 use glam::DVec3;
 
+use crate::support::maps::{Samples, read_maps};
 use crate::support::pictures::{beam, grey, plan, rectangle, scene, sphere, unwatched};
 use crate::support::stranger::Stranger;
 
@@ -198,7 +198,7 @@ fn the_command_makes_a_picture_of_one_pixel_and_refuses_one_of_8192_by_8192_befo
     assert_eq!((maps.width, maps.height), (1, 1));
     // A lamp of 100 / 4 pi cd at 1 m over a plate that scatters a half.
     let exact = 100.0 / (4.0 * std::f64::consts::PI) * 0.5 / std::f64::consts::PI;
-    let (_, OwnedData::F32(y)) = maps.channels.iter().find(|(name, _)| name == "Y").unwrap() else {
+    let (_, Samples::F32(y)) = maps.channels.iter().find(|(name, _)| name == "Y").unwrap() else {
         panic!("Y")
     };
     assert!((f64::from(y[0]) / exact - 1.0).abs() < 1e-3, "{} {exact}", y[0]);

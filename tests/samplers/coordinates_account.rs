@@ -5,12 +5,12 @@
 //! the coordinates drawn must be what the account says, with renormalisation and without, and stand to the paper's
 //! equations (4) and (6) as METHOD says. (K. Dmitriev, "From Monte Carlo to quasi-Monte Carlo".)
 
-use caustix::emitter::{Emission, Emitter, Emitters, Isotropic, Photometric};
+use caustix::emitter::{AimFrame, Emission, Emits, Emitter, Emitters, Isotropic, Photometric};
 use caustix::files::lm63;
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::{Chooser, Coordinates, Purpose};
 use caustix::sample::method::Sampling;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Points;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
@@ -107,10 +107,7 @@ impl<P: Points> Chooser for Recorded<'_, P> {
 /// Coordinates of an emission: with renormalisation two, (choices and the first angle, the second angle); without, one for
 /// each choice that there is and two angles.
 fn emission_account(scene: &Scene, emitter: usize, reuse: bool) -> u32 {
-    let cells = match &scene.emitters.as_slice()[emitter] {
-        Emitter::Photometric(e) => !e.grid().choice().is_single(),
-        Emitter::Isotropic(_) | Emitter::Collimated(_) | Emitter::Panel(_) => false,
-    };
+    let cells = scene.emitters.as_slice()[emitter].table().is_some_and(|grid| !grid.choice().is_single());
     let choices = u32::from(scene.emitters.as_slice().len() > 1) + u32::from(cells);
     if reuse { 2 } else { 2 + choices }
 }
@@ -128,7 +125,7 @@ struct Totals {
 
 fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, totals: &mut Totals) -> u32 {
     let mut coordinates = Coordinates::new(points, index, reuse);
-    let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+    let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
     let emitted_with = emission_account(scene, emitter, reuse);
     assert_eq!(coordinates.drawn(), emitted_with, "photon {index}: emission");
     let mut chooser =
@@ -217,7 +214,7 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
             interrupt: &AtomicBool::new(false),
             progress: &|_| {},
         };
-        let census = trace_range(scene, &owen, 0..photons, Grey, how, || Ignore).census;
+        let census = trace_range(scene, &scene.emitters, &owen, 0..photons, Grey, how, || Ignore).census;
         assert_eq!(census.drawn_for.iter().sum::<u64>(), totals.drawn, "{name}");
         assert_eq!(census.dimension_histogram, histogram, "{name}");
         assert_eq!(census.dimension_max, totals.longest, "{name}");
@@ -250,16 +247,23 @@ fn glass_box(min: DVec3, max: DVec3) -> (Surface, Material) {
 fn table_lamp(file: &str, position: DVec3) -> Emitter {
     let photometry = lm63::read(data::own_file(file)).unwrap();
     let aim = DVec3::new(0.1, -0.2, -1.0);
-    Emitter::Photometric(Box::new(Photometric::new(&photometry, position, aim, DVec3::Y, None).unwrap()))
+    let frame = AimFrame::new(aim, None).unwrap();
+    Emitter::Photometric(Photometric::new(&photometry, position, frame, None).unwrap())
 }
 
 fn point(position: DVec3, flux_lm: f64) -> Emitter {
-    Emitter::Isotropic(Isotropic { position, flux_lm })
+    Emitter::Isotropic(Isotropic::new(position, flux_lm).unwrap())
 }
 
 fn scene(surfaces: Vec<(Surface, Material)>, emitters: Vec<Emitter>) -> Scene {
-    let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp {i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, ..SceneParts::default() }).unwrap()
+    let mut scene = SceneBuilder::new();
+    for (surface, material) in surfaces {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    for (i, emitter) in emitters.into_iter().enumerate() {
+        scene.emitter(format!("lamp {i}"), emitter);
+    }
+    scene.build().unwrap()
 }
 
 fn floor(bsdf: Material) -> (Surface, Material) {
@@ -358,18 +362,19 @@ fn an_emission_that_spends_its_coordinate_takes_a_fresh_one() {
     // A lamp of 1e-13 of the flux costs 43.2 bits: fewer than 24 remain, so its first angle needs another coordinate; one
     // of 1e-12 costs 39.9, and what remains will do. A table behind the rare choice takes a fresh one for its cell.
     for (share, table, drawn) in [(1e-13, false, 3), (1e-12, false, 2), (1e-13, true, 3)] {
-        let big = point(DVec3::ZERO, 1e16);
+        let big = point(DVec3::ZERO, 1e12);
         let rare = if table {
             let photometry = lm63::read(data::own_file("spot.ies")).unwrap();
-            let e = Photometric::new(&photometry, DVec3::Z, -DVec3::Z, DVec3::Y, Some(1e16 * share)).unwrap();
-            Emitter::Photometric(Box::new(e))
+            let frame = AimFrame::new(DVec3::NEG_Z, None).unwrap();
+            let e = Photometric::new(&photometry, DVec3::Z, frame, Some(1e12 * share)).unwrap();
+            Emitter::Photometric(e)
         } else {
-            point(DVec3::Z, 1e16 * share)
+            point(DVec3::Z, 1e12 * share)
         };
         let emitters = Emitters::new(vec![rare, big]).unwrap();
         let points = FirstGiven(1 << 19, IndependentPoints::new(3, 0));
         let mut coordinates = Coordinates::new(&points, 0, true);
-        let (which, _) = emitters.emit(&mut coordinates);
+        let (which, _) = emitters.emit(Sampling::default(), &mut coordinates).unwrap();
         assert_eq!((which, coordinates.drawn()), (0, drawn), "{share} {table}");
     }
 }

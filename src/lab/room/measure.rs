@@ -131,7 +131,9 @@ fn trace<P: Points>(
     how: How<'_>,
     tally: &WeightedReceivers<'_>,
 ) -> Traced {
-    trace_range(scene, points, 0..task.photons, Fixed::white(reflections), how, || tally.sink())
+    trace_range(scene, &scene.emitters, points, 0..task.photons, Fixed::white(reflections), how, || {
+        tally.sink()
+    })
 }
 
 /// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics as often as

@@ -4,7 +4,7 @@
 //! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
 //! integrals.
 
-use crate::emitter::Emitter;
+use crate::emitter::Emits;
 use crate::run::Algorithm;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
@@ -87,10 +87,7 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
     emitters
         .iter()
         .map(|emitter| {
-            let cells = match emitter {
-                Emitter::Photometric(e) => Some(e.grid()),
-                _ => None,
-            };
+            let cells = emitter.table();
             let chosen_cell = cells.is_some_and(|grid| !grid.choice().is_single());
             let own = |choices: [bool; 2]| {
                 let choices = choices.iter().filter(|c| **c).count() as f64;
@@ -103,7 +100,7 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
                 (Sampling::Rejection(_), Some(grid)) => {
                     own([chosen_emitter, false]) + 3.0 * grid.proposals_of_table()
                 }
-                _ => own([chosen_emitter, chosen_cell]) + emitter.continuous_coordinates(),
+                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.kind().coordinates),
             };
             emitter.flux_lm() / total * coordinates
         })
@@ -114,7 +111,9 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
     let mut sum = Events::default();
     for index in 0..PHOTONS {
         let mut chooser = Watched::new(Coordinates::new(points, index, true));
-        let (emitter, emission) = scene.emitters.emit(&mut chooser.inner);
+        let Some((emitter, emission)) = scene.emitters.emit(Sampling::default(), &mut chooser.inner) else {
+            continue;
+        };
         let mut sink = Arrivals { scene, events: Events::default() };
         let start = scene.start(emitter);
         let exceptions = &mut Exceptions::default();

@@ -64,14 +64,9 @@ impl Grids {
         grids.names = divided.iter().map(|r| r.name.clone()).collect();
         for &k in cells {
             let receivers = divided.iter().map(|receiver| {
-                let spec = ReceiverSpec {
-                    name: receiver.name.clone(),
-                    surface: scene.geometry.surfaces()[receiver.surface.0 as usize].name.clone(),
-                    cells: Some([k, k]),
-                    side: receiver.side,
-                    events: receiver.events,
-                };
-                Receiver::new(&spec, &scene.geometry)
+                let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize].name;
+                let spec = ReceiverSpec::new(&receiver.name, surface)?.with_cells([k, k])?;
+                Receiver::new(&spec.on_side(receiver.side).of_events(receiver.events), &scene.geometry)
             });
             let receivers = receivers.collect::<Result<Vec<_>>>()?;
             grids.push(k, receivers);

@@ -7,15 +7,15 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use crate::emitter::{Emitter, WeightedEmitters};
+use crate::emitter::{Emits, Emitter, Emitters};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::{Points, Sequence};
+use crate::surface::{Grey, Rgb};
 use crate::tally::Receivers;
-use crate::transport::parallel::How;
-use crate::transport::weighted::trace_weighted;
+use crate::transport::parallel::{How, trace_range};
 
 use crate::lab::study::cells::Grids;
 use crate::lab::study::norms::nrms_of_mean;
@@ -78,7 +78,7 @@ pub const MOST_REFERENCE_PHOTONS: u64 = MOST_PHOTONS_PER_REPLICATE * REPLICATES 
 
 /// Emission map of the reference of a scene, in words: only tables have two.
 pub fn emission_map(scene: &Scene) -> &'static str {
-    let is_table = |e: &Emitter| matches!(e, Emitter::Photometric(_));
+    let is_table = |e: &Emitter| e.table().is_some();
     let emitters = scene.emitters.as_slice();
     if emitters.iter().all(is_table) {
         "directions uniform in solid angle (over the cells that emit), weighted by the intensity"
@@ -110,7 +110,7 @@ pub fn trace_replicate(
         PointSet { sequence: plan.sequence, seed: plan.seed, replicate, number: plan.photons_per_replicate };
     let complete = Replicate {
         scene,
-        emitters: WeightedEmitters::new(&scene.emitters)?,
+        emitters: scene.emitters.with_weights()?,
         receivers: &receivers,
         how,
         photons: plan.photons_per_replicate,
@@ -123,7 +123,7 @@ pub fn trace_replicate(
 
 struct Replicate<'a, 's> {
     scene: &'s Scene,
-    emitters: WeightedEmitters<'s>,
+    emitters: Emitters,
     receivers: &'a Receivers<'s>,
     how: How<'a>,
     photons: u64,
@@ -133,7 +133,12 @@ struct Replicate<'a, 's> {
 impl Replicate<'_, '_> {
     fn trace<P: Points>(self, points: &P) -> bool {
         let sink = || self.receivers.fixed_point_sink(self.units);
-        trace_weighted(self.scene, &self.emitters, points, 0..self.photons, self.how, sink)
+        let Self { scene, emitters, how, .. } = &self;
+        if scene.is_coloured() {
+            trace_range(scene, emitters, points, 0..self.photons, Rgb::WHITE, *how, sink).complete
+        } else {
+            trace_range(scene, emitters, points, 0..self.photons, Grey, *how, sink).complete
+        }
     }
 }
 

@@ -6,11 +6,11 @@
 
 use glam::DVec3;
 
-use crate::emitter::Emitter;
+use crate::emitter::{Emits, Emitter};
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::picture::camera::pinhole::EyeRay;
 use crate::picture::camera::view::View;
-use crate::picture::gather::density::{Density, Gathered};
+use crate::picture::gather::{Density, Gathered};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::scene::Scene;
 use crate::surface::{EyeWeight, Incidence, Leg, Material, Way};
@@ -90,7 +90,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
                 add(found, weight, seen(scene, origin, direction, end));
                 if hit.is_none() {
-                    add(found, weight, self.view.spec.background_cd_m2);
+                    add(found, weight, self.view.camera.background_cd_m2);
                 }
             }
             let Some(hit) = hit else { return };
@@ -196,7 +196,7 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
     sum
 }
 
-/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Panels stand in nobody's way.
+/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Area lights stand in nobody's way.
 fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, chooser: &mut R) -> [f64; 3] {
     let material = scene.material(hit.surface);
     let from = |side: Side| {
@@ -228,7 +228,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
 /// Coordinates of a point of an emitter, where it has more than one.
 #[inline]
 fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
-    match emitter.direct_coordinates() {
+    match emitter.kind().direct_coordinates {
         0 => [0.0; 2],
         _ => [chooser.uniform(Purpose::BeamPosition), chooser.uniform(Purpose::BeamPosition)],
     }

@@ -3,10 +3,10 @@
 use super::*;
 use crate::emitter::{Emitter, Isotropic};
 use crate::geometry::mesh::{MeshParts, Smoothing};
-use crate::geometry::{Mesh, Rectangle, Shape, Surface, box_mesh};
+use crate::geometry::{Mesh, Rectangle, Shape, box_mesh};
 use crate::sample::coordinates::Coordinates;
 use crate::scattering::{Frame, LobeData, LobeSide, Quantity, ScatterTable};
-use crate::scene::SceneParts;
+use crate::scene::SceneBuilder;
 use crate::sequence::independent::IndependentPoints;
 use crate::surface::tabulated::{Energy, Options};
 use crate::surface::tests::Script;
@@ -23,13 +23,12 @@ impl<T: Throughput> Sink<T> for Seen<T> {
 }
 
 fn scene(surfaces: impl IntoIterator<Item = (Shape, Material)>) -> Scene {
-    let named = surfaces.into_iter().enumerate().map(|(i, (shape, material))| {
-        let name = format!("surface {i}");
-        (Surface { name, shape }, material)
-    });
-    let lamp = Isotropic { position: DVec3::new(5.0, 5.0, 5.0), flux_lm: 1.0 };
-    let emitters = vec![("lamp".to_string(), Emitter::Isotropic(lamp))];
-    Scene::new(SceneParts { surfaces: named.collect(), emitters, ..SceneParts::default() }).unwrap()
+    let mut scene = SceneBuilder::new();
+    for (i, (shape, material)) in surfaces.into_iter().enumerate() {
+        scene.surface(format!("surface {i}"), shape, material);
+    }
+    scene.emitter("lamp", Emitter::Isotropic(Isotropic::new(DVec3::splat(5.0), 1.0).unwrap()));
+    scene.build().unwrap()
 }
 
 /// A square about the z axis at this height that looks up or down.
@@ -44,7 +43,7 @@ fn mirror(reflectance: f64) -> Material {
 }
 
 fn down() -> Emission {
-    Emission { origin: DVec3::new(0.1, 0.2, 0.5), direction: DVec3::NEG_Z }
+    Emission { origin: DVec3::new(0.1, 0.2, 0.5), direction: DVec3::NEG_Z, weight: 1.0 }
 }
 
 fn walked<C: Chooser, T: Throughput>(
@@ -124,7 +123,7 @@ fn exceptions_of_smooth_normals_are_counted() {
         [([0.1, 0.0, 1.0], 0.0, 0), ([1.0, 0.0, 0.8], 0.0, 1), ([1.0, 0.0, 0.5], 1.0, 1)]
     {
         let direction = DVec3::new(x, 0.0, -1.0).normalize();
-        let emission = Emission { origin: -0.5 * direction, direction };
+        let emission = Emission { origin: -0.5 * direction, direction, weight: 1.0 };
         let (end, seen, exceptions) = walked(&leaning(normal), emission, Grey, &mut Script::default());
         assert_eq!((end, seen.len()), (End::Escaped, 1));
         let expected = Exceptions { corrected_directions: corrected, ..Exceptions::default() };
@@ -153,7 +152,7 @@ fn photons_that_a_table_sends_below_the_horizon_are_counted() {
     let scene = scene([(plate(0.0, true), Material::Tabulated(Box::new(table)))]);
     let (sin, cos) = 70f64.to_radians().sin_cos();
     let direction = DVec3::new(sin, 0.0, -cos);
-    let emission = Emission { origin: -0.5 * direction, direction };
+    let emission = Emission { origin: -0.5 * direction, direction, weight: 1.0 };
     let points = IndependentPoints::new(3, 0);
     let (mut ended, mut counted) = (0, 0);
     for i in 0..256 {

@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::emitter::Isotropic;
-use crate::geometry::{Rectangle, Shape, Surface, box_mesh};
+use crate::geometry::{Rectangle, Shape, box_mesh};
 use crate::sample::coordinates::Coordinates;
-use crate::scene::SceneParts;
-use crate::scene::camera::CameraSpec;
+use crate::scene::SceneBuilder;
+use crate::scene::camera::{Camera, CameraSpec};
 use crate::sequence::independent::IndependentPoints;
 use crate::surface::{Dielectric, Mirror, Reflectance};
 
@@ -13,13 +13,16 @@ const PHOTOGRAPHED: [f64; 3] = [3.0, 2.0, 1.0];
 
 /// Mean over so many paths of what an eye at the origin that looks along z sees before this background.
 fn seen(surfaces: Vec<(Shape, Material)>, paths: u64) -> [f64; 3] {
-    let named = surfaces.into_iter().map(|(shape, m)| (Surface { name: format!("{m:?}"), shape }, m));
-    let lamp = Isotropic { position: DVec3::splat(9.0), flux_lm: 1.0 };
-    let emitters = vec![("lamp".to_string(), Emitter::Isotropic(lamp))];
-    let parts = SceneParts { surfaces: named.collect(), emitters, ..SceneParts::default() };
-    let scene = Scene::new(parts).unwrap();
+    let mut scene = SceneBuilder::new();
+    for (shape, material) in surfaces {
+        scene.surface(format!("{material:?}"), shape, material);
+    }
+    scene.emitter("lamp", Emitter::Isotropic(Isotropic::new(DVec3::splat(9.0), 1.0).unwrap()));
+    let scene = scene.build().unwrap();
     let pinhole = CameraSpec::pinhole(DVec3::ZERO, DVec3::Z, DVec3::Y, 1.0, [1, 1]);
-    let view = View::new(&scene, &CameraSpec { background_cd_m2: PHOTOGRAPHED, ..pinhole }, 0).unwrap();
+    let view =
+        View::new(&scene, &Camera::new(CameraSpec { background_cd_m2: PHOTOGRAPHED, ..pinhole }).unwrap(), 0)
+            .unwrap();
     let looks = Looks { emission: true, direct: true, densities: &[] };
     let mut eye = EyePath::<3>::new(&view, looks, 1);
     let points = IndependentPoints::new(1, 0);
