@@ -6,6 +6,7 @@
 use glam::DVec3;
 
 use crate::error::Invalid;
+use crate::error::invalid::Interval;
 use crate::sample::coordinates::Chooser;
 use crate::surface::lambertian::{sample_cosine, value};
 use crate::surface::throughput::Fate;
@@ -18,8 +19,8 @@ pub struct DiffuseTransmission {
     transmitted: Reflectance,
 }
 
-/// What a transmittance must be, in words.
-pub const REQUIRED: &str = "a transmittance from 0 to 1";
+/// Transmitted parts.
+pub const TRANSMITTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a transmittance from 0 to 1" };
 
 impl DiffuseTransmission {
     /// A sheet that reflects and transmits these parts of red, green and blue, on either side.
@@ -28,7 +29,7 @@ impl DiffuseTransmission {
     /// Parts that are not from 0 to 1, or more than 1 together.
     pub fn new(reflectance: [f64; 3], transmittance: [f64; 3]) -> Result<Self, Invalid> {
         let reflected = Reflectance::rgb(reflectance)?;
-        let transmitted = Reflectance::named("transmittance", transmittance, REQUIRED)?;
+        let transmitted = Reflectance::named("transmittance", transmittance, &TRANSMITTANCE)?;
         let this = Self { reflected, transmitted };
         if this.scattered().iter().all(|part| *part <= 1.0) {
             return Ok(this);
@@ -49,13 +50,11 @@ impl DiffuseTransmission {
 }
 
 impl Model for DiffuseTransmission {
+    const REQUIRES: &[&str] = &["diffuse scattering", "diffuse transmission"];
+
     #[inline]
     fn kind(&self) -> Kind {
         if luminance(self.scattered()) > 0.0 { Kind::Scattering } else { Kind::Absorbing }
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &["diffuse scattering", "diffuse transmission"]
     }
 
     fn is_coloured(&self) -> bool {

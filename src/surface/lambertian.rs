@@ -31,13 +31,11 @@ impl Lambertian {
 }
 
 impl Model for Lambertian {
+    const REQUIRES: &[&str] = &["diffuse scattering"];
+
     #[inline]
     fn kind(&self) -> Kind {
         if self.reflectance.luminous() > 0.0 { Kind::Scattering } else { Kind::Absorbing }
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        if self.kind() == Kind::Scattering { &["diffuse scattering"] } else { &[] }
     }
 
     fn is_coloured(&self) -> bool {

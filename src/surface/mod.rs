@@ -135,10 +135,14 @@ pub struct Ways {
 
 /// The contract of [`Material`], for one model. Where there is a default it is that of a model that has no such thing.
 pub trait Model {
+    /// [`Material::requires`], of one that lets light go on.
+    const REQUIRES: &[&str];
     /// [`Material::kind`].
     fn kind(&self) -> Kind;
     /// [`Material::requires`].
-    fn requires(&self) -> &'static [&'static str];
+    fn requires(&self) -> &'static [&'static str] {
+        if self.kind() == Kind::Absorbing { &[] } else { Self::REQUIRES }
+    }
     /// [`Material::is_coloured`].
     fn is_coloured(&self) -> bool;
     /// [`Material::scatter`].

@@ -6,23 +6,17 @@ use super::loader::Make;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::parts::MaterialPart;
 use super::table::Table;
-use crate::error::invalid::Interval;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;
 use crate::geometry::{ANGLE, Shape};
 use crate::math::frame::unit;
+use crate::surface::dielectric::IOR;
+use crate::surface::diffuse_transmission::TRANSMITTANCE;
+use crate::surface::reflectance::REFLECTANCE;
 use crate::surface::tabulated::{Energy, Options, Sides};
 use crate::surface::{
-    Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated, dielectric, diffuse_transmission, reflectance,
+    Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated,
 };
-
-const IOR: Interval = interval(dielectric::RANGE, dielectric::REQUIRED);
-const REFLECTANCE: Interval = interval(reflectance::RANGE, reflectance::REQUIRED);
-const TRANSMITTANCE: Interval = interval(reflectance::RANGE, diffuse_transmission::REQUIRED);
-
-const fn interval([low, high]: [f64; 2], words: &'static str) -> Interval {
-    Interval { low, high, words }
-}
 
 const TYPES: [&str; 5] = ["dielectric", "mirror", "lambertian", "absorber", "tabulated"];
 

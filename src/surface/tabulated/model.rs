@@ -14,13 +14,11 @@ use crate::surface::{Event, Incidence, Kind, Leg, Model, Throughput, Way, Ways};
 use crate::units::LUMINANCE_OF_RGB;
 
 impl Model for Tabulated {
+    const REQUIRES: &[&str] = &["tabulated scattering"];
+
     #[inline]
     fn kind(&self) -> Kind {
         Kind::Scattering
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &["tabulated scattering"]
     }
 
     fn is_coloured(&self) -> bool {
