@@ -12,8 +12,9 @@ use std::path::Path;
 
 use caustix::error::Diagnostic;
 use caustix::lab::study::picture_bias::{Row, mapped, rate, splatted};
-use caustix::plot::canvas::{Anchor, Colour, TextStyle};
+use caustix::plot::canvas::{Anchor, TextStyle};
 use caustix::plot::drawing::{Drawing, Pen, Shape};
+use caustix::report::colour::Colour;
 use caustix::scene::camera::{Bandwidth, Camera};
 
 /// 2^m photons of the reference, its replicates, its seed.
@@ -43,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     std::fs::write(Path::new(&folder).join("picture_bias.csv"), csv(&all))?;
-    drawing(&all).write_svg(Path::new(&folder).join("picture_bias.svg"))?;
+    drawing(&all).write(&Path::new(&folder).join("picture_bias.svg"))?;
     Ok(())
 }
 

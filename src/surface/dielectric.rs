@@ -1,7 +1,7 @@
 //! A smooth interface between two transparent media: exact Fresnel reflection, refraction, total reflection.
 //!
-//! Scene text: `type = "dielectric"`, `ior` behind the outward normal, `ior_outside` (default 1) before it. Unpolarised at
-//! every face: a slab then passes T = (1 - R)/(1 + R) with R the mean of s and p (METHOD 1).
+//! Scene text: `type = "dielectric"`, `ior` behind the outward normal, `ior_outside` (default 1) before it.
+//! Unpolarised at every face: a slab then passes T = (1 - R)/(1 + R) with R the mean of s and p (METHOD 1).
 
 use glam::DVec3;
 
@@ -41,8 +41,8 @@ impl Dielectric {
     }
 }
 
-/// Unpolarised Fresnel reflectance and the cosine of the refracted ray, for relative index `eta` = transmitted over
-/// incident and the cosine of incidence; total reflection is (1, 0).
+/// Unpolarised Fresnel reflectance and the cosine of the refracted ray, for relative index `eta` =
+/// transmitted over incident and the cosine of incidence; total reflection is (1, 0).
 #[inline]
 pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
     if eta == 1.0 {
@@ -59,8 +59,9 @@ pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
 }
 
 impl Dielectric {
-    /// The part of the flux that is mirrored (1 in total reflection), and both ways on by whether they go through: the
-    /// direction, unit, and whether a smooth normal made an exception necessary ([`Event::Leaves`]).
+    /// The part of the flux that is mirrored (1 in total reflection), and both ways on by whether they go
+    /// through: the direction, unit, and whether a smooth normal made an exception necessary
+    /// ([`Event::Leaves`]).
     #[inline]
     fn split(&self, at: &Incidence) -> (f64, impl Fn(bool) -> (DVec3, bool)) {
         let Incidence { direction, facet, .. } = *at;
@@ -81,9 +82,10 @@ impl Dielectric {
         (reflectance, way)
     }
 
-    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye path that goes
-    /// on through the interface from the medium of index n_i, on the side `front`, sees that part of the luminance in n_t.
-    /// (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2.)
+    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye
+    /// path that goes on through the interface from the medium of index n_i, on the side `front`, sees that
+    /// part of the luminance in n_t. (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
+    /// 1997, section 5.2.)
     #[inline]
     fn luminance_factor(&self, front: bool) -> f64 {
         let ratio = self.ior_outside / self.ior;

@@ -1,7 +1,8 @@
-//! A thin diffuse sheet (paper, opal glass, a lampshade): light leaves with the cosine law on the side of arrival and on the
-//! other one. The medium is the same on both sides.
+//! A thin diffuse sheet (paper, opal glass, a lampshade): light leaves with the cosine law on the side of
+//! arrival and on the other one. The medium is the same on both sides.
 //!
-//! Scene text: `type = "lambertian"`, `reflectance` and `transmittance`, each 0 to 1 or `[r, g, b]`, at most 1 together.
+//! Scene text: `type = "lambertian"`, `reflectance` and `transmittance`, each 0 to 1 or `[r, g, b]`, at most
+//! 1 together.
 
 use glam::DVec3;
 
@@ -12,7 +13,8 @@ use crate::surface::lambertian::{sample_cosine, value};
 use crate::surface::throughput::Fate;
 use crate::surface::{Event, Incidence, Kind, Leg, Model, Reflectance, Throughput, luminance};
 
-/// A thin sheet: f = reflectance / pi between directions of one side, transmittance / pi between those of different sides.
+/// A thin sheet: f = reflectance / pi between directions of one side, transmittance / pi between those of
+/// different sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiffuseTransmission {
     reflected: Reflectance,
@@ -61,8 +63,8 @@ impl Model for DiffuseTransmission {
         self.reflected.is_coloured() || self.transmitted.is_coloured()
     }
 
-    /// Scatters what the throughput lets go on; into which side is an event of its own. (Kept out of the walk, whose other
-    /// surfaces need few registers.)
+    /// Scatters what the throughput lets go on; into which side is an event of its own. (Kept out of the
+    /// walk, whose other surfaces need few registers.)
     #[inline(never)]
     fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, carried: &mut T) -> Event {
         let scattered = self.scattered();

@@ -1,4 +1,5 @@
-//! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of arrival.
+//! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of
+//! arrival.
 //!
 //! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`. With a `transmittance` it is
 //! [`crate::surface::DiffuseTransmission`].

@@ -6,7 +6,8 @@ use crate::error::Invalid;
 use crate::error::invalid::Interval;
 use crate::units::LUMINANCE_OF_RGB;
 
-/// Parts of the flux that are reflected, by channel, and the part of white light's luminous flux that they make.
+/// Parts of the flux that are reflected, by channel, and the part of white light's luminous flux that they
+/// make.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reflectance {
     luminous: f64,

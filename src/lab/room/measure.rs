@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::lab::study::runs::processor_time;
+use crate::lab::study::runs::Clock;
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -88,6 +88,7 @@ pub(crate) fn areas_m2(scene: &Scene) -> Vec<f64> {
 pub fn measure(
     scene: &Scene,
     task: &Task,
+    clock: Clock,
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement> {
@@ -100,7 +101,7 @@ pub fn measure(
         task.photons,
         arrivals(scene, reflections),
     )?;
-    let started = processor_time()?;
+    let started = clock()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
     let traced = trace(scene, &points, task, reflections, how, &tally);
     if !traced.complete {
@@ -119,7 +120,7 @@ pub fn measure(
             .collect(),
         escaped: traced.ledger.escaped,
         coordinates: (traced.census.dimension_mean(), traced.census.dimension_max),
-        trace_s: processor_time()?.duration_since(started).as_secs_f64(),
+        trace_s: clock()?.saturating_sub(started).as_secs_f64(),
     })
 }
 

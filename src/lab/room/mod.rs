@@ -130,25 +130,3 @@ impl RoomStudy {
         self.runs.iter().flatten().flatten().all(|m| m.escaped == 0)
     }
 }
-
-/// Measures everything, one task after another, each over all threads. `progress` is told the number of photons after
-/// each batch.
-///
-/// A caller that keeps what is finished goes through [`Options::tasks`] itself, calls [`measure()`] for what it does not have
-/// yet, and makes a [`RoomStudy`] of all.
-///
-/// # Errors
-/// Those of [`measure()`] and [`RoomStudy::new`].
-pub fn run(
-    scene: &Scene,
-    options: &Options,
-    interrupt: &AtomicBool,
-    progress: &(dyn Fn(u64) + Sync),
-) -> Result<RoomStudy> {
-    let measurements: Vec<Measurement> = options
-        .tasks()
-        .iter()
-        .map(|task| measure(scene, task, interrupt, progress))
-        .collect::<Result<_>>()?;
-    RoomStudy::new(scene, options, &measurements)
-}

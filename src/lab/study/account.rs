@@ -1,8 +1,9 @@
-//! The coordinates that a photon uses, predicted from the events it goes through, beside the paper's equations.
+//! The coordinates that a photon uses, predicted from the events it goes through, beside the paper's
+//! equations.
 //!
-//! The prediction shares nothing with the counter in [`crate::sample::coordinates`]: events are counted as the walk asks for
-//! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
-//! integrals.
+//! The prediction shares nothing with the counter in [`crate::sample::coordinates`]: events are counted as
+//! the walk asks for them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a
+//! rejection come from the table's integrals.
 
 use crate::emitter::Emits;
 use crate::run::Algorithm;
@@ -32,7 +33,8 @@ pub struct Events {
     pub end: f64,
     /// Events with more than one outcome.
     pub decisions: f64,
-    /// Coordinates that those take with renormalisation: one for all, and one more whenever fewer than 24 bits are left.
+    /// Coordinates that those take with renormalisation: one for all, and one more whenever fewer than 24
+    /// bits are left.
     pub shared: f64,
     /// Continuous coordinates of scattered directions.
     pub continuous: f64,
@@ -94,8 +96,8 @@ impl Events {
     }
 }
 
-/// Coordinates of an emission: the choices (emitter, cell), each with a coordinate of its own unless they are shared, then
-/// the direction.
+/// Coordinates of an emission: the choices (emitter, cell), each with a coordinate of its own unless they are
+/// shared, then the direction.
 fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
     let emitters = scene.emitters.as_slice();
     let chosen_emitter = emitters.iter().filter(|e| e.flux_lm() > 0.0).count() > 1;

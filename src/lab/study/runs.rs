@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-use cpu_time::ProcessTime;
-
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::run::Algorithm;
 use crate::run::tracer::Tracer;
 use crate::scene::Scene;
@@ -29,6 +28,10 @@ pub fn ladder(from: u64, until: u64) -> Vec<u64> {
     rungs
 }
 
+/// Tells the time by which costs are compared, from any start: that of the process's processors, which other programs don't
+/// take from.
+pub type Clock = fn() -> Result<Duration>;
+
 /// What runs are measured on.
 #[derive(Debug, Clone, Copy)]
 pub struct Measure<'a> {
@@ -38,6 +41,8 @@ pub struct Measure<'a> {
     pub grids: &'a Grids,
     /// What errors are against.
     pub reference: &'a Reference,
+    /// What costs are measured by.
+    pub clock: Clock,
 }
 
 impl Measure<'_> {
@@ -48,7 +53,7 @@ impl Measure<'_> {
     /// know N is traced anew for each.
     ///
     /// # Errors
-    /// A sequence that cannot have this many points; a system that does not tell its processor time.
+    /// A sequence that cannot have this many points; a clock that cannot be read.
     pub fn ladder(
         &self,
         algorithm: Algorithm,
@@ -70,9 +75,9 @@ impl Measure<'_> {
                 (so_far, cpu_s) = (Traced::new(scene), 0.0);
                 tracer = Tracer::new(scene, algorithm, seed, 0, photons);
             }
-            let started = processor_time()?;
+            let started = (self.clock)()?;
             let traced = tracer.trace(photons, &receivers, interrupt, progress)?;
-            cpu_s += processor_time()?.duration_since(started).as_secs_f64();
+            cpu_s += (self.clock)()?.saturating_sub(started).as_secs_f64();
             so_far.merge(&traced);
             if !so_far.complete {
                 return Ok(None);
@@ -100,14 +105,4 @@ impl Measure<'_> {
         };
         self.grids.cell_ranges().into_iter().map(of).collect()
     }
-}
-
-pub(crate) fn processor_time() -> Result<ProcessTime> {
-    ProcessTime::try_now().map_err(|e| {
-        Diagnostic::new(
-            Kind::Io,
-            format!("no processor time: {e}"),
-            "a system that tells it, for cost at equal time",
-        )
-    })
 }
