@@ -10,7 +10,8 @@ use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
 use caustix::files::lm63;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
-use caustix::sample::cell::{Cell, Row};
+use caustix::sample::angles::Row;
+use caustix::sample::cell::Cell;
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
 use caustix::sequence::independent::IndependentPoints;
@@ -95,7 +96,13 @@ fn cells() -> Vec<(Row, Cell)> {
     ];
     let rows = [(0.0, 2.5), (2.5, 5.0), (42.5, 45.0), (87.5, 90.0), (60.0, 90.0), (175.0, 180.0)];
     let rows = rows.map(|(from, to): (f64, f64)| Row::new(from.to_radians(), to.to_radians()));
-    rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, 0, 0, c).unwrap()))).collect()
+    rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, c).unwrap()))).collect()
+}
+
+/// F(s) of the cell equation, as the library has it.
+fn mass(row: &Row, cell: &Cell, s: f64) -> f64 {
+    let [a1, a2, b1, b2] = cell.corners;
+    Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(s).0
 }
 
 fn cell_equation(criterion: &mut Criterion) {
@@ -114,11 +121,13 @@ fn cell_equation(criterion: &mut Criterion) {
     }
     // The width of a cell is of order 0.1, so the one absolute tolerance of `roots` serves as a relative one here.
     let rule = || SimpleConvergency { eps: 1e-14, max_iter: 100 };
+    let residual =
+        |row: &Row, cell: &Cell, s: f64, u: f64| mass(row, cell, s) / mass(row, cell, row.width) - u;
     solver("roots: Brent", &|row, cell, u| {
-        find_root_brent(0.0, row.width, |s| cell.theta_cdf(row, s) - u, &mut rule()).unwrap_or(f64::NAN)
+        find_root_brent(0.0, row.width, |s| residual(row, cell, s, u), &mut rule()).unwrap_or(f64::NAN)
     });
     solver("roots: secant", &|row, cell, u| {
-        find_root_secant(0.0, row.width, |s| cell.theta_cdf(row, s) - u, &mut rule()).unwrap_or(f64::NAN)
+        find_root_secant(0.0, row.width, |s| residual(row, cell, s, u), &mut rule()).unwrap_or(f64::NAN)
     });
 }
 

@@ -9,7 +9,7 @@ use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
 use crate::geometry::COORDINATE;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 use crate::surface::lambertian::cosine_direction;
@@ -100,7 +100,7 @@ impl<S: LitShape> Emits for AreaLight<S> {
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        let x = coordinates.remainder(u, Purpose::BeamPosition);
+        let x = coordinates.rest(u, Purpose::BeamPosition);
         let y = to_unit_f64(coordinates.draw(Purpose::BeamPosition));
         let u1 = to_unit_f64(coordinates.draw(Purpose::EmissionTheta));
         let u2 = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));

@@ -13,7 +13,7 @@ use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
 use crate::geometry::{COORDINATE, LENGTH};
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 
@@ -91,7 +91,7 @@ impl Emits for Beam {
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        let u1 = coordinates.remainder(u, Purpose::BeamPosition);
+        let u1 = coordinates.rest(u, Purpose::BeamPosition);
         let u2 = to_unit_f64(coordinates.draw(Purpose::BeamPosition));
         let [a, b] = if self.is_round { unit_disc([u1, u2]) } else { [2.0 * u1 - 1.0, 2.0 * u2 - 1.0] };
         let [x, y] = self.half_axes;

@@ -11,7 +11,7 @@ use crate::error::Invalid;
 use crate::geometry::COORDINATE;
 use crate::math::trig::sin_cos;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 
@@ -52,7 +52,7 @@ impl Emits for Isotropic {
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        let u1 = coordinates.remainder(u, Purpose::EmissionTheta);
+        let u1 = coordinates.rest(u, Purpose::EmissionTheta);
         let u2 = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
         let cos_theta = 1.0 - 2.0 * u1;
         // sin^2 = 4 u (1 - u): no cancellation towards either pole.

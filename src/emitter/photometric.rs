@@ -26,7 +26,7 @@ use crate::sample::choose::Reusable;
 use crate::sample::coordinates::Coordinates;
 use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
-use crate::sample::rejection::UniformMap;
+use crate::sample::uniform_map::UniformMap;
 use crate::sequence::Points;
 
 /// A photometric point emitter.

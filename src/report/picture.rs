@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::exr::{Channel, Data, Value, write_luminance};
+use crate::files::exr::{Channel, Data, Light, Value, write_maps};
 use crate::files::png::write_rgb8;
 use crate::picture::camera::Film;
 use crate::plot::false_colour::{FalseColour, Quantity};
@@ -67,7 +67,7 @@ fn write_exr<const C: usize>(path: &Path, film: &Film<C>, attributes: &[(String,
         names.iter().zip(&colours).map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
     channels.push(Channel { name: "standard_error", data: Data::F32(&error) });
     channels.push(Channel { name: "bias", data: Data::F32(&bias) });
-    write_luminance(path, film.pixels[0] as usize, film.pixels[1] as usize, &channels, attributes)
+    write_maps(path, film.pixels.map(|n| n as usize), &channels, attributes, Light::Luminance)
 }
 
 fn write_false_colour<const C: usize>(path: &Path, name: &str, film: &Film<C>, tone: &Tone) -> Result<()> {

@@ -127,7 +127,7 @@ fn grey_written_as_colour_is_grey() {
     let b = sphere("type = \"lambertian\"\nreflectance = [0.7, 0.7, 0.7]", "");
     assert!(!requirements(&b).contains(&"colour"));
     let outcomes = [&a, &b].map(|s| run(s, Sequence::SobolOwen, 1 << 12, 4, 6));
-    assert_eq!(outcomes[0].cells[0], outcomes[1].cells[0]);
+    assert_eq!(outcomes[0].cells()[0], outcomes[1].cells()[0]);
     assert_eq!(outcomes[0].ledger, outcomes[1].ledger);
 }
 
@@ -192,7 +192,7 @@ fn the_room_is_closed_and_has_276_triangles() {
     for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
         let outcome = run(&scene, sequence, 1 << 16, 8, seed);
         assert_eq!(outcome.ledger.escaped, 0);
-        assert!(outcome.totals.sum.iter().sum::<u64>() > outcome.photons);
+        assert!(outcome.totals().sum.iter().sum::<u64>() > outcome.photons);
     }
 }
 
@@ -264,7 +264,7 @@ fn weights_and_roulette_agree_in_the_room() {
     for (r, receiver) in dim.receivers.iter().enumerate() {
         for cell in 0..receiver.cells.len() {
             let roulette = outcome.illuminance_lx(r, cell, receiver.area_m2(cell));
-            let hits = outcome.cells[r].sum[cell];
+            let hits = outcome.cells()[r].sum[cell];
             let values: Vec<f64> = sets.iter().map(|s| s[cell_of_all]).collect();
             cell_of_all += 1;
             if hits < 160 {

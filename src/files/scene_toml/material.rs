@@ -2,13 +2,15 @@
 
 use glam::DVec3;
 
-use super::MaterialPart;
 use super::loader::Make;
+use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
+use super::parts::MaterialPart;
 use super::table::Table;
 use crate::error::invalid::Interval;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;
 use crate::geometry::{ANGLE, Shape};
+use crate::math::frame::unit;
 use crate::surface::tabulated::{Energy, Options, Sides};
 use crate::surface::{
     Dielectric, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated, dielectric, reflectance,
@@ -89,9 +91,11 @@ fn read_tabulated(table: &mut Table<'_, '_>, reference: &mut Option<DVec3>) -> O
     let file = table.path("file");
     let sides = table.word("side", &SIDES).unwrap_or_default();
     let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
-    if table.place_of("reference").is_some() {
-        *reference = Some(table.direction("reference", None)?);
+    let along = table.vector("reference", &DIRECTION);
+    if along.is_some_and(|v| unit(v).is_none()) {
+        table.error("reference", Kind::Range, DIRECTION_REQUIRED);
     }
+    *reference = along.and_then(unit);
     let energy = table.word("energy", &ENERGIES).unwrap_or_default();
     let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
     let file = file?;

@@ -8,8 +8,9 @@ use crate::error::Result;
 use crate::lab::certificate::{Draw, PointKind};
 use crate::run::Algorithm;
 use crate::run::tracer::{PointSet, UsePoints};
+use crate::sample::cell::GridPoint;
 use crate::sample::coordinates::{Coordinates, Purpose};
-use crate::sample::grid::{Grid, GridPoint};
+use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, Sequence};
 
