@@ -4,5 +4,6 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod circles;
 mod layering;
 mod support_checks;
