@@ -9,6 +9,7 @@ pub mod cells;
 pub mod data;
 pub mod density;
 pub mod judge;
+pub mod lamp;
 pub mod pictures;
 pub mod quadrature;
 pub mod random;
