@@ -18,8 +18,8 @@ use super::{exit, print, say};
 pub(super) fn compare(args: &CompareArgs, scene: &Scene) -> Result<u8, Vec<Diagnostic>> {
     let one = |e: Diagnostic| vec![e];
     refuse_what_has_no_meaning(args).map_err(one)?;
-    let mut options = Options::new(args.full);
-    options.seeds = seeds(args).map_err(one)?;
+    let options = seeds(args).and_then(|seeds| Options::new(Options::paper_ladder(args.full), seeds));
+    let options = options.map_err(one)?;
     make_directory(&args.output).map_err(one)?;
     catch_interrupts();
     let pool = thread_pool(args.threads).map_err(one)?;

@@ -95,9 +95,10 @@ fn write_text(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
         "sequence", "photons", "and", "deviation", "paper"
     )?;
     for d in study.deviations() {
-        let paper = paper(d.sequence, [d.few, d.many]).map_or("-".to_string(), |p| format!("{p:.2e}"));
-        let (few, many) = (grouped(d.few), grouped(d.many));
-        writeln!(out, "  {:<24} {few:>11} {many:>11}  {:<22} {paper:>8}", title(d.sequence), value(d.value))?;
+        let [sequence, _] = d.sequences;
+        let paper = paper(sequence, d.photons).map_or("-".to_string(), |p| format!("{p:.2e}"));
+        let [few, many] = d.photons.map(grouped);
+        writeln!(out, "  {:<24} {few:>11} {many:>11}  {:<22} {paper:>8}", title(sequence), value(d.value))?;
     }
     let [few, many] = last_pair(study);
     writeln!(out, "\nrandom against the others, {} and {} photons", grouped(few), grouped(many))?;
@@ -112,13 +113,14 @@ fn write_text(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
     }
     writeln!(out, "\ndeviation between sequences, {} photons", grouped(many))?;
     for b in study.between() {
+        let [first, second] = b.sequences;
         writeln!(
             out,
             "  {:<24} {:<24} {:<22} {:>8}",
-            title(b.first),
-            title(b.second),
+            title(first),
+            title(second),
             value(b.value),
-            paper_between(b.first, b.second, many).map_or("-".to_string(), |p| format!("{p:.2e}"))
+            paper_between(first, second, many).map_or("-".to_string(), |p| format!("{p:.2e}"))
         )?;
     }
     writeln!(out, "\nerror of the luminance against the other sequences' {} photons", grouped(many))?;
@@ -260,8 +262,9 @@ fn write_between(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
     writeln!(out, "## Between sequences, {} photons\n", grouped(many))?;
     writeln!(out, "| | and | deviation | paper |\n|---|---|---|---|")?;
     for b in study.between() {
-        let paper = paper_between(b.first, b.second, many).map_or("-".to_string(), |p| format!("{p:.2e}"));
-        writeln!(out, "| {} | {} | {} | {paper} |", title(b.first), title(b.second), value(b.value))?;
+        let [first, second] = b.sequences;
+        let paper = paper_between(first, second, many).map_or("-".to_string(), |p| format!("{p:.2e}"));
+        writeln!(out, "| {} | {} | {} | {paper} |", title(first), title(second), value(b.value))?;
     }
     writeln!(out)
 }
@@ -348,12 +351,12 @@ pub fn deviations_csv(study: &RoomStudy) -> String {
         let _infallible = writeln!(out, "{a},{},{b},{},{},{spread},{paper}", pair[0], pair[1], v.mean);
     };
     for d in study.deviations() {
-        let pair = [d.few, d.many];
-        row([d.sequence; 2], pair, d.value, paper(d.sequence, pair));
+        row(d.sequences, d.photons, d.value, paper(d.sequences[0], d.photons));
     }
     let [_, many] = last_pair(study);
     for b in study.between() {
-        row([b.first, b.second], [many; 2], b.value, paper_between(b.first, b.second, many));
+        let [first, second] = b.sequences;
+        row(b.sequences, b.photons, b.value, paper_between(first, second, many));
     }
     out
 }

@@ -10,7 +10,6 @@ use std::sync::atomic::AtomicBool;
 use caustix::lab::study::cells::Grids;
 use caustix::lab::study::reference::{REPLICATES, Reference, ReferencePlan, trace_replicate};
 use caustix::run::{Algorithm, Plan, Settings, trace};
-use caustix::scene::Scene;
 use caustix::surface::luminance;
 use glam::DVec3;
 
@@ -76,11 +75,11 @@ fn plate_lx(k: usize) -> Vec<f64> {
 }
 
 /// A reference as `compare` traces it, with the sums of its replicates.
-fn traced(scene: &Scene, grids: &Grids, photons: u64) -> (Reference, Vec<Vec<u64>>) {
+fn traced<'g>(grids: &'g Grids<'g>, photons: u64) -> (Reference<'g>, Vec<Vec<u64>>) {
     let plan = ReferencePlan::new(photons, &[1]).unwrap();
-    let replicate = |r| trace_replicate(scene, grids, &plan, r, &AtomicBool::new(false), &|_| {}).unwrap();
+    let replicate = |r| trace_replicate(grids, &plan, r, &AtomicBool::new(false), &|_| {}).unwrap();
     let replicates: Vec<Vec<u64>> = (0..REPLICATES).map(|r| replicate(r).unwrap()).collect();
-    (Reference::new(scene, grids, &plan, &replicates).unwrap(), replicates)
+    (Reference::new(grids, &plan, &replicates).unwrap(), replicates)
 }
 
 /// Relative standard error of the mean of a cell over the replicates, from their sums alone.
@@ -92,14 +91,20 @@ fn relative_error(replicates: &[Vec<u64>], cell: usize) -> f64 {
 }
 
 /// Judges cells of a reference, from `first` on, in units of its own standard errors; the t of their sum, too.
-fn assert_exact(label: &str, (reference, replicates): &(Reference, Vec<Vec<u64>>), first: usize, exact: &[f64]) {
+fn assert_exact(
+    label: &str,
+    (reference, replicates): &(Reference<'_>, Vec<Vec<u64>>),
+    first: usize,
+    exact: &[f64],
+) {
     let found = &reference.illuminance_lx()[first..first + exact.len()];
     let t = |(cell, (found, exact)): (usize, (&f64, &f64))| {
         (found - exact) / (found * relative_error(replicates, first + cell))
     };
     let ts: Vec<f64> = found.iter().zip(exact).enumerate().map(t).collect();
     let verdict = judge(&ts, REPLICATES - 1);
-    let of_all: Vec<Vec<u64>> = replicates.iter().map(|r| vec![r[first..first + exact.len()].iter().sum()]).collect();
+    let of_all: Vec<Vec<u64>> =
+        replicates.iter().map(|r| vec![r[first..first + exact.len()].iter().sum()]).collect();
     let ratio = found.iter().sum::<f64>() / exact.iter().sum::<f64>();
     let t = (ratio - 1.0) / relative_error(&of_all, 0);
     println!("{label}: {verdict:?}; in all {ratio:.6} of what is exact, t = {t:.2}");
@@ -118,15 +123,17 @@ fn nrms(found: &[f64], exact: &[f64]) -> f64 {
 fn weights_give_every_cell_the_light_of_the_file() {
     let scene = scene(&plate());
     let grids = Grids::new(&scene, &[24, 8]).unwrap();
-    let traced = traced(&scene, &grids, 1 << 19);
+    let traced = traced(&grids, 1 << 19);
     for (grid, (first, k)) in [(0, 24), (576, 8)].into_iter().enumerate() {
         let exact = plate_lx(k);
         assert_exact(&format!("{k} x {k}"), &traced, first, &exact);
         let (reference, replicates) = &traced;
         let found = &reference.illuminance_lx()[first..first + k * k];
         // The error that the reference says it has is the root mean square of its cells' standard errors ...
-        let errors = found.iter().enumerate().map(|(c, e)| (e * relative_error(replicates, first + c)).powi(2));
-        let own = (errors.sum::<f64>() / (k * k) as f64).sqrt() / (found.iter().sum::<f64>() / (k * k) as f64);
+        let errors =
+            found.iter().enumerate().map(|(c, e)| (e * relative_error(replicates, first + c)).powi(2));
+        let own =
+            (errors.sum::<f64>() / (k * k) as f64).sqrt() / (found.iter().sum::<f64>() / (k * k) as f64);
         assert!((reference.own_nrms()[grid] / own - 1.0).abs() < 1e-6, "{own}");
         // ... and it has it: of 64 cells' squares, 7 degrees each, the root of the ratio spreads by about 10 %.
         let ratio = nrms(found, &exact) / own;
@@ -168,7 +175,7 @@ cells = [1, 1]
         );
     let scene = scene(&text);
     let grids = Grids::new(&scene, &[8]).unwrap();
-    let traced = traced(&scene, &grids, 1 << 19);
+    let traced = traced(&grids, 1 << 19);
     let lamp = floodlight(position);
     let direct = cell_means(8, 8, 20, |u, v| {
         let z = 2.0 * v - 1.0;
@@ -187,24 +194,24 @@ cells = [1, 1]
 
 #[test]
 fn a_run_s_errors_are_the_norms_of_its_own_counts() {
-    let scene = scene(&plate());
-    let grids = Grids::new(&scene, &[12]).unwrap();
-    let (reference, _) = traced(&scene, &grids, 1 << 13);
+    let bare = scene(&plate());
+    let finer = scene(&plate().replace("cells = [1, 1]", "cells = [12, 12]"));
+    let grids = Grids::new(&bare, &[12]).unwrap();
+    let (reference, _) = traced(&grids, 1 << 13);
     let (ladder, quiet) = ([1 << 9, 1 << 11], AtomicBool::new(false));
     for name in ["mc", "qmc-inverse-reuse", "qmc-inverse:hammersley-rotation"] {
         let algorithm = Algorithm::parse(name).unwrap();
-        let runs = reference.ladder(&scene, &grids, algorithm, 3, &ladder, &quiet, &|_| {}).unwrap().unwrap();
+        let runs = reference.measure(algorithm, 3, &ladder, &quiet, &|_| {}).unwrap().unwrap();
         for (run, photons) in runs.iter().zip(ladder) {
             // The same photons as `render` counts them.
             let settings = Settings { photons: Some(photons), replicates: Some(1), seed: 3, algorithm };
-            let mut finer = scene_of_cells(12);
-            finer.warnings.clear();
             let outcome = trace(&finer, &Plan::new(&settings).unwrap(), &quiet, &|_| {}).unwrap();
             let cell_m2 = 9.0 / 144.0;
             let lx: Vec<f64> =
                 outcome.cells[0].sum.iter().map(|n| *n as f64 * outcome.photon_lm / cell_m2).collect();
             let exact = reference.illuminance_lx();
-            let sum = |of: &dyn Fn(f64, f64) -> f64| lx.iter().zip(exact).map(|(a, b)| of(*a, *b)).sum::<f64>();
+            let sum =
+                |of: &dyn Fn(f64, f64) -> f64| lx.iter().zip(exact).map(|(a, b)| of(*a, *b)).sum::<f64>();
             let squares = sum(&|a, b| (a - b).powi(2));
             let expected = [
                 nrms(&lx, exact),
@@ -212,16 +219,14 @@ fn a_run_s_errors_are_the_norms_of_its_own_counts() {
                 sum(&|a, b| (a - b).abs()) / sum(&|_, b| b),
             ];
             let found = run.errors[0];
-            for (found, expected) in [found.nrms, found.relative_rms, found.relative_l1].into_iter().zip(expected) {
+            for (found, expected) in
+                [found.nrms, found.relative_rms, found.relative_l1].into_iter().zip(expected)
+            {
                 assert!((found / expected - 1.0).abs() < 1e-12, "{name}, {photons}: {found} {expected}");
             }
             assert_eq!((run.seed, run.photons), (3, photons));
         }
     }
-}
-
-fn scene_of_cells(k: u32) -> Scene {
-    scene(&plate().replace("cells = [1, 1]", &format!("cells = [{k}, {k}]")))
 }
 
 /// The whole command: nRMS of independent points is the binomial's, sqrt(mean of p (1 - p) / N (Phi / A)^2) over the mean.

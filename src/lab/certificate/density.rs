@@ -8,8 +8,8 @@
 //! Inside a cell the candela is linear in theta at fixed phi and linear in phi at fixed theta (eq. 7), so two nodes along
 //! either angle determine it; all nodes lie inside cells, where rounding cannot put them into another one.
 
+use super::quadrature::{Gauss, TWO_POINT};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::lab::certificate::quadrature::{Gauss, TWO_POINT};
 use crate::photometry::{PhotometricType, Web};
 
 /// The density of directions of a file, over the grid angles theta and phi of [`Web::full_grid`].
@@ -26,19 +26,6 @@ pub struct Density<'w> {
     mass_lm: Vec<f64>,
     /// Integral over the rows before each, and over all: rows + 1 values, lm.
     below_lm: Vec<f64>,
-}
-
-/// A direction as the density's distribution functions see it; each number is uniform on [0, 1] under the density.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Distribution function of theta.
-    pub theta: f64,
-    /// Distribution function of phi given theta.
-    pub phi: f64,
-    /// Distribution function of theta given its row.
-    pub theta_in_row: f64,
-    /// Distribution function of phi given theta and the column.
-    pub phi_in_column: f64,
 }
 
 /// By how many ulps of the last angle a computed angle may lie beyond it.
@@ -145,8 +132,9 @@ impl<'w> Density<'w> {
         Some(row * self.columns() + interval(&self.azimuth_rad, phi)?)
     }
 
-    /// The distribution functions at a direction inside this cell, which is one of positive mass.
-    pub fn place(&self, cell: usize, theta: f64, phi: f64) -> Place {
+    /// Distribution functions at a direction inside this cell, which is one of positive mass: of theta, of phi given theta,
+    /// of theta given its row, of phi given theta and its column. Each is uniform on [0, 1] under the density.
+    pub fn place(&self, cell: usize, theta: f64, phi: f64) -> [f64; 4] {
         let (row, column) = (cell / self.columns(), cell % self.columns());
         let s = (theta - self.polar_rad[row]).clamp(0.0, self.row_width(row));
         let nodes = at_nodes(s / self.row_width(row));
@@ -167,12 +155,12 @@ impl<'w> Density<'w> {
             let ratio = part / whole;
             if ratio.is_finite() { ratio.clamp(0.0, 1.0) } else { 0.5 }
         };
-        Place {
-            theta: fraction(below_lm + to_theta_lm, self.total_lm()),
-            phi: fraction(near + part, all),
-            theta_in_row: fraction(to_theta_lm, row_lm),
-            phi_in_column: fraction(part, far - near),
-        }
+        [
+            fraction(below_lm + to_theta_lm, self.total_lm()),
+            fraction(near + part, all),
+            fraction(to_theta_lm, row_lm),
+            fraction(part, far - near),
+        ]
     }
 
     fn row_width(&self, row: usize) -> f64 {
@@ -234,8 +222,8 @@ mod tests {
         }
         for (theta, phi) in [(0.1f64, 0.2), (0.53, 6.0), (1.7, 1.0), (3.1, 3.0), (PI, 2.0 * PI)] {
             let place = density.place(density.cell(theta, phi).unwrap(), theta, phi);
-            assert!((place.theta - 0.5 * (1.0 - theta.cos())).abs() < 1e-14);
-            assert!((place.phi - phi / (2.0 * PI)).abs() < 1e-14);
+            assert!((place[0] - 0.5 * (1.0 - theta.cos())).abs() < 1e-14);
+            assert!((place[1] - phi / (2.0 * PI)).abs() < 1e-14);
         }
     }
 
@@ -248,9 +236,9 @@ mod tests {
         for (theta, phi) in [(0.3f64, 5.0), (1.0, 0.4), (1.5, 2.0)] {
             let place = density.place(0, theta, phi);
             let exact = theta.sin() - theta * theta.cos();
-            assert!((place.theta - exact).abs() < 1e-14, "{place:?} {exact}");
-            assert!((place.phi - (phi / (2.0 * PI)).powi(2)).abs() < 1e-14);
-            assert_eq!((place.theta, place.phi), (place.theta_in_row, place.phi_in_column));
+            assert!((place[0] - exact).abs() < 1e-14, "{place:?} {exact}");
+            assert!((place[1] - (phi / (2.0 * PI)).powi(2)).abs() < 1e-14);
+            assert_eq!(place[..2], place[2..]);
         }
     }
 

@@ -3,8 +3,7 @@
 //! [`cells`] divides the scene's receivers into the grids that errors are measured on; [`norms`] are the errors;
 //! [`reference`](mod@reference) traces what they are measured against; [`runs`] traces one point set of one algorithm and
 //! takes the errors at every number of photons of a ladder; [`account`] predicts the coordinates a photon uses from the
-//! events it goes through; [`results`] holds all that, [`fit`] and [`table`] are what follows from it. [`room`] compares sequences in
-//! a scene whose photons are reflected a fixed number of times; [`picture_bias`] measures the photon map against the splat.
+//! events it goes through; [`results`] holds all that, [`fit`] and [`table`] are what follows from it.
 
 pub mod norms;
 pub mod fit;
@@ -12,7 +11,6 @@ pub mod results;
 pub mod table;
 pub mod account;
 pub mod cells;
-pub mod picture_bias;
 pub mod reference;
 pub mod runs;
 
