@@ -1,8 +1,10 @@
-//! The reference of `compare` against quadrature and a closed form, and the errors that are measured against it.
+//! The reference of `compare` against quadrature and a closed form, and the errors that are measured against
+//! it.
 //!
-//! Weights: two lamps over a black plate, whose cells are integrals of I cos / d^2 over the file's own table. Colour: two
-//! lamps in a coloured sphere, whose wall receives the same indirect light everywhere. Errors: independent points leave a
-//! binomial number of photons in each cell, so that their nRMS is known without any reference.
+//! Weights: two lamps over a black plate, whose cells are integrals of I cos / d^2 over the file's own table.
+//! Colour: two lamps in a coloured sphere, whose wall receives the same indirect light everywhere. Errors:
+//! independent points leave a binomial number of photons in each cell, so that their nRMS is known without
+//! any reference.
 
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -90,7 +92,8 @@ fn relative_error(replicates: &[Vec<u64>], cell: usize) -> f64 {
     (sums.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt() / mean
 }
 
-/// Judges cells of a reference, from `first` on, in units of its own standard errors; the t of their sum, too.
+/// Judges cells of a reference, from `first` on, in units of its own standard errors; the t of their sum,
+/// too.
 fn assert_exact(
     label: &str,
     (reference, replicates): &(Reference<'_>, Vec<Vec<u64>>),
@@ -135,7 +138,8 @@ fn weights_give_every_cell_the_light_of_the_file() {
         let own =
             (errors.sum::<f64>() / (k * k) as f64).sqrt() / (found.iter().sum::<f64>() / (k * k) as f64);
         assert!((reference.own_nrms()[grid] / own - 1.0).abs() < 1e-6, "{own}");
-        // ... and it has it: of 64 cells' squares, 7 degrees each, the root of the ratio spreads by about 10 %.
+        // ... and it has it: of 64 cells' squares, 7 degrees each, the root of the ratio spreads by about 10
+        // %.
         let ratio = nrms(found, &exact) / own;
         println!("{k} x {k}: own nRMS {own:.5}, against quadrature {ratio:.3} of it");
         assert!((0.6..1.6).contains(&ratio), "{ratio}");
@@ -184,7 +188,8 @@ cells = [1, 1]
         let point = -1.4 * inward;
         lamp.illuminance_lx(point, inward) + bare_lx(bare_lm, bare, point, inward)
     });
-    // After m reflections Y(c rho^m) / Y(c) of the flux of a lamp of colour c is left, on all of the wall alike.
+    // After m reflections Y(c rho^m) / Y(c) of the flux of a lamp of colour c is left, on all of the wall
+    // alike.
     let left = |c: [f64; 3]| luminance([0, 1, 2].map(|i| c[i] * rho[i] / (1.0 - rho[i]))) / luminance(c);
     let file_lm = scene.emitters.flux_lm() - bare_lm;
     let indirect = (file_lm * left(red) + bare_lm * left(blue)) / (4.0 * PI * 1.4 * 1.4);
@@ -229,7 +234,8 @@ fn a_run_s_errors_are_the_norms_of_its_own_counts() {
     }
 }
 
-/// The whole command: nRMS of independent points is the binomial's, sqrt(mean of p (1 - p) / N (Phi / A)^2) over the mean.
+/// The whole command: nRMS of independent points is the binomial's, sqrt(mean of p (1 - p) / N (Phi / A)^2)
+/// over the mean.
 #[test]
 fn the_nrms_of_independent_points_is_the_binomial_s() {
     let (k, photons, seeds) = (16, 4096.0, 16.0);
@@ -253,8 +259,8 @@ fn the_nrms_of_independent_points_is_the_binomial_s() {
     let n = exact.len() as f64;
     let sum: f64 = variances.iter().sum();
     let expected = (sum / n).sqrt() / (exact.iter().sum::<f64>() / n);
-    // Relative standard deviation of the mean square over the seeds; of a count of mean m the square of the deviation
-    // has the variance 2 m^2 + m. The reference's own square, 1/100 of the run's, is left out.
+    // Relative standard deviation of the mean square over the seeds; of a count of mean m the square of the
+    // deviation has the variance 2 m^2 + m. The reference's own square, 1/100 of the run's, is left out.
     let spread = |(v, lx): (&f64, &f64)| v * v * (2.0 + flux_lm / (photons * lx * cell_m2));
     let deviation = (variances.iter().zip(&exact).map(spread).sum::<f64>() / seeds).sqrt() / sum;
     let z = ((found / expected).powi(2) - 1.0) / deviation;

@@ -1,4 +1,5 @@
-//! Light of a luminaire that meets a surface straight, from the file's own table: nothing of the sampler is used.
+//! Light of a luminaire that meets a surface straight, from the file's own table: nothing of the sampler is
+//! used.
 
 use caustix::files::lm63;
 use caustix::photometry::Photometry;
@@ -24,7 +25,8 @@ impl Lamp {
         Self { photometry, position, aim, up }
     }
 
-    /// Luminous intensity towards a direction (unit), cd: bilinear in the file's vertical and horizontal angles.
+    /// Luminous intensity towards a direction (unit), cd: bilinear in the file's vertical and horizontal
+    /// angles.
     pub fn intensity_cd(&self, direction: DVec3) -> f64 {
         let right = self.aim.cross(self.up);
         let [a, u, r] = [self.aim, self.up, right].map(|axis| direction.dot(axis));

@@ -1,14 +1,16 @@
 //! A certificate that sampled directions have the density of a photometric file.
 //!
-//! [`Density`] is what the file says, by quadrature of its own candela; [`Judge`] is fed with draws, wherever they come
-//! from ([`sampler`] draws with every variant and sequence), and gives a [`Certificate`]: tests with p-values, corrected
-//! for their number. docs/CERTIFICATE.md says what is tested and why the null distributions are valid.
+//! [`Density`] is what the file says, by quadrature of its own candela; [`Judge`] is fed with draws, wherever
+//! they come from ([`sampler`] draws with every variant and sequence), and gives a [`Certificate`]: tests
+//! with p-values, corrected for their number. docs/CERTIFICATE.md says what is tested and why the null
+//! distributions are valid.
 //!
-//! For independent draws every null distribution is that of random points. Low-discrepancy points are more even than
-//! that: there the tests for random points are upper bounds (a sampler that fails them is wrong, one that passes is as good
-//! as random points can tell), the L2-star discrepancy of the draws, mapped to the unit square by the file's distribution
-//! functions (Rosenblatt 1952), is tested and shown beside that of random points, and where the sequence is randomised
-//! the mean count of every cell over independent randomisations is tested against their own spread.
+//! For independent draws every null distribution is that of random points. Low-discrepancy points are more
+//! even than that: there the tests for random points are upper bounds (a sampler that fails them is wrong,
+//! one that passes is as good as random points can tell), the L2-star discrepancy of the draws, mapped to the
+//! unit square by the file's distribution functions (Rosenblatt 1952), is tested and shown beside that of
+//! random points, and where the sequence is randomised the mean count of every cell over independent
+//! randomisations is tested against their own spread.
 
 pub mod density;
 pub mod discrepancy;
@@ -117,8 +119,9 @@ impl<'d> Judge<'d> {
         }
     }
 
-    /// Takes the draws of one more randomisation of the point set, independent of the others and of the set that is
-    /// certified; only how many fall into each cell is used. Of a sequence without randomisation there is none.
+    /// Takes the draws of one more randomisation of the point set, independent of the others and of the set
+    /// that is certified; only how many fall into each cell is used. Of a sequence without randomisation
+    /// there is none.
     pub fn replicate(&mut self, draws: impl IntoIterator<Item = Draw>) {
         let mut counts = vec![0; self.counts.len()];
         let mut number = 0;
@@ -138,31 +141,19 @@ impl<'d> Judge<'d> {
         let (zero, in_dark) = dark.fold((0, 0), |(cells, draws), (n, _)| (cells + 1, draws + n));
         let draws_in_zero_cells = in_dark + self.means.draws_in_zero_cells;
         let chi = chi_square(&self.counts, &self.probabilities);
-        let mut tests = vec![
-            chi.test(TestName::ChiSquare, "counts of the table's cells"),
-            largest_cell(&self.counts, &self.probabilities)
-                .test(TestName::LargestCell, "the least likely count, % of its expectation"),
-        ];
-        let names = [
-            (TestName::KsTheta, "theta"),
-            (TestName::KsPhi, "phi given theta"),
-            (TestName::KsThetaInRow, "theta given its row"),
-            (TestName::KsPhiInColumn, "phi given theta and its column"),
-        ];
-        for ((name, what), uniformity) in names.into_iter().zip(&self.uniformity) {
-            tests.push(uniformity.test(name, what));
-        }
+        let largest = largest_cell(&self.counts, &self.probabilities);
+        let mut tests = vec![chi.test(TestName::ChiSquare), largest.test(TestName::LargestCell)];
+        let names = [TestName::KsTheta, TestName::KsPhi, TestName::KsThetaInRow, TestName::KsPhiInColumn];
+        tests.extend(self.uniformity.iter().zip(names).map(|(uniformity, name)| uniformity.test(name)));
         let number = self.square.len();
         let squared = squared_l2_star(&mut self.square);
         let random_squared = RANDOM_MEAN / number.max(1) as f64;
         if self.points == PointKind::LowDiscrepancy {
             let scaled = number as f64 * squared;
             let p_value = if number > 0 { random_tail(scaled) } else { 1.0 };
-            let what = "N T^2 of the draws in the unit square";
-            tests.push(Test::new(TestName::Discrepancy, what, scaled, None, p_value));
-            if let Some(means) = self.means.judge(&self.probabilities) {
-                tests.push(means.test(TestName::CellMeans, "mean counts over randomisations, t"));
-            }
+            tests.push(Test::new(TestName::Discrepancy, scaled, None, p_value));
+            let means = self.means.judge(&self.probabilities);
+            tests.extend(means.map(|means| means.test(TestName::CellMeans)));
         }
         let together = tests.len();
         for test in &mut tests {

@@ -14,8 +14,8 @@ pub struct Test {
     pub name: TestName,
     /// What it compares.
     pub what: &'static str,
-    /// The test statistic: chi-square, largest Kolmogorov-Smirnov distance, N T^2, largest t, or the largest deviation of
-    /// a cell in per cent of its expectation.
+    /// The test statistic: chi-square, largest Kolmogorov-Smirnov distance, N T^2, largest t, or the largest
+    /// deviation of a cell in per cent of its expectation.
     pub statistic: f64,
     /// Degrees of freedom, where the test has any.
     pub degrees: Option<usize>,
@@ -49,18 +49,25 @@ pub enum TestName {
     CellMeans,
 }
 
+impl TestName {
+    /// Its name in tables, and what it compares.
+    const fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::ChiSquare => ["chi-square", "counts of the table's cells"],
+            Self::LargestCell => ["largest cell", "the least likely count, % of its expectation"],
+            Self::KsTheta => ["KS theta", "theta"],
+            Self::KsPhi => ["KS phi | theta", "phi given theta"],
+            Self::KsThetaInRow => ["KS theta in row", "theta given its row"],
+            Self::KsPhiInColumn => ["KS phi in column", "phi given theta and its column"],
+            Self::Discrepancy => ["discrepancy", "N T^2 of the draws in the unit square"],
+            Self::CellMeans => ["cell means", "mean counts over randomisations, t"],
+        }
+    }
+}
+
 impl fmt::Display for TestName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::ChiSquare => "chi-square",
-            Self::LargestCell => "largest cell",
-            Self::KsTheta => "KS theta",
-            Self::KsPhi => "KS phi | theta",
-            Self::KsThetaInRow => "KS theta in row",
-            Self::KsPhiInColumn => "KS phi in column",
-            Self::Discrepancy => "discrepancy",
-            Self::CellMeans => "cell means",
-        })
+        f.pad(self.words()[0])
     }
 }
 
@@ -136,14 +143,10 @@ pub struct Certificate {
 
 impl Test {
     /// A test by itself, not yet corrected for others.
-    pub(super) fn new(
-        name: TestName,
-        what: &'static str,
-        statistic: f64,
-        degrees: Option<usize>,
-        p_value: f64,
-    ) -> Self {
-        Self { name, what, statistic, degrees, p_value, p_corrected: p_value, passed: p_value >= FALSE_ALARM }
+    pub(super) fn new(name: TestName, statistic: f64, degrees: Option<usize>, p_value: f64) -> Self {
+        let [_, what] = name.words();
+        let passed = p_value >= FALSE_ALARM;
+        Self { name, what, statistic, degrees, p_value, p_corrected: p_value, passed }
     }
 }
 

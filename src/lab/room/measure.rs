@@ -44,8 +44,8 @@ pub struct Measurement {
     pub seed: u64,
     /// Photons.
     pub photons: u64,
-    /// Mean radiance arriving in each cell of the scene's receivers, one receiver after another, by channel: flux / area
-    /// / pi, in cd/m2 of a white of which all channels are equal.
+    /// Mean radiance arriving in each cell of the scene's receivers, one receiver after another, by channel:
+    /// flux / area / pi, in cd/m2 of a white of which all channels are equal.
     pub radiance: Vec<[f64; 3]>,
     /// Photons that left the scene.
     pub escaped: u64,
@@ -73,8 +73,8 @@ pub(super) fn reflections(scene: &Scene) -> Result<u32> {
     })
 }
 
-/// Traces the photons of a task through exactly M reflections each; `progress` is told the number of photons after each
-/// batch. The same numbers, time apart, with any number of threads.
+/// Traces the photons of a task through exactly M reflections each; `progress` is told the number of photons
+/// after each batch. The same numbers, time apart, with any number of threads.
 ///
 /// # Errors
 /// A scene without `[compare]`; more photons than [`WeightedReceivers`] has room for; an interrupt.
@@ -110,8 +110,9 @@ pub fn measure(
     })
 }
 
-/// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics as often as
-/// roulette lets it. Photons of coloured light count as often as their strongest channel outweighs white's.
+/// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics
+/// as often as roulette lets it. Photons of coloured light count as often as their strongest channel
+/// outweighs white's.
 fn arrivals(scene: &Scene, reflections: u32) -> u32 {
     let passes = scene.receivers.iter().any(|r| scene.material(r.surface).is_transparent());
     let arrivals = if passes { crate::transport::walk::MAX_EVENTS } else { reflections + 1 };

@@ -1,10 +1,11 @@
-//! The experiment of S. Heinrich and A. Keller, "Quasi-Monte Carlo Methods in Computer Graphics, Part II: The Radiance
-//! Equation" (Kaiserslautern, 1994), section 5: how well do point sequences find the light that arrives at every triangle
-//! of a closed diffuse scene after at most M reflections?
+//! The experiment of S. Heinrich and A. Keller, "Quasi-Monte Carlo Methods in Computer Graphics, Part II: The
+//! Radiance Equation" (Kaiserslautern, 1994), section 5: how well do point sequences find the light that
+//! arrives at every triangle of a closed diffuse scene after at most M reflections?
 //!
-//! Every photon carries a weight per channel through exactly M reflections, without roulette, on 2 M + 4 coordinates; at each
-//! of its M + 1 arrivals the weight is added to the triangle ([`measure()`]). A number of photons is compared with a larger one
-//! of the same sequence, and the largest of the sequences with each other ([`tables`]), in the paper's norm.
+//! Every photon carries a weight per channel through exactly M reflections, without roulette, on 2 M + 4
+//! coordinates; at each of its M + 1 arrivals the weight is added to the triangle ([`measure()`]). A number
+//! of photons is compared with a larger one of the same sequence, and the largest of the sequences with each
+//! other ([`tables`]), in the paper's norm.
 
 pub mod measure;
 pub mod tables;
@@ -29,7 +30,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// Numbers of photons, rising, at least two; seeds of the random sequence, at least one (the others have none).
+    /// Numbers of photons, rising, at least two; seeds of the random sequence, at least one (the others have
+    /// none).
     ///
     /// # Errors
     /// Numbers that do not rise, fewer than two; no seed.

@@ -1,8 +1,8 @@
 //! What follows from the measurements: the paper's tables, and errors against a reference.
 //!
-//! The reference of a sequence is the mean of the largest measurements (the masters) of the *other* low-discrepancy
-//! sequences, so that nothing is compared with itself. Their spread tells its own error: an indication, not a statistical
-//! one, because none of them is random.
+//! The reference of a sequence is the mean of the largest measurements (the masters) of the *other*
+//! low-discrepancy sequences, so that nothing is compared with itself. Their spread tells its own error: an
+//! indication, not a statistical one, because none of them is random.
 
 use std::f64::consts::PI;
 
@@ -29,8 +29,8 @@ impl Value {
     }
 }
 
-/// An entry of the paper's tables 2 to 5 (two numbers of photons of one sequence) or 6 (two sequences with the largest
-/// number of photons).
+/// An entry of the paper's tables 2 to 5 (two numbers of photons of one sequence) or 6 (two sequences with
+/// the largest number of photons).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
     /// Indices into [`SEQUENCES`].
@@ -163,7 +163,8 @@ impl RoomStudy {
         (0..self.options.ladder.len()).map(level).collect()
     }
 
-    /// Mean illuminance of the masters of the other low-discrepancy sequences, and its own nRMS from their spread.
+    /// Mean illuminance of the masters of the other low-discrepancy sequences, and its own nRMS from their
+    /// spread.
     fn reference(&self, without: usize) -> (Vec<f64>, f64) {
         let masters: Vec<Vec<f64>> = (0..SEQUENCES.len())
             .filter(|s| *s != without && !SEQUENCES[*s].is_randomised())
@@ -183,8 +184,9 @@ impl RoomStudy {
     }
 }
 
-/// The paper's norm: sqrt( sum A d^2 / sum A ), d the Euclidean distance of two radiances [r, g, b] of a cell of area A, both
-/// in units of the greatest channel of any cell of `better`, so that this lies in [0, 1] as the paper's do. NaN without light.
+/// The paper's norm: sqrt( sum A d^2 / sum A ), d the Euclidean distance of two radiances [r, g, b] of a cell
+/// of area A, both in units of the greatest channel of any cell of `better`, so that this lies in [0, 1] as
+/// the paper's do. NaN without light.
 fn deviation(areas_m2: &[f64], estimate: &[[f64; 3]], better: &[[f64; 3]]) -> f64 {
     let greatest = better.iter().flatten().copied().fold(0.0, f64::max);
     let mut squares = 0.0;

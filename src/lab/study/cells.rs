@@ -15,7 +15,8 @@ pub struct Grids<'s> {
     pub(crate) scene: &'s Scene,
     /// Every receiver once for each grid, grid by grid.
     pub(crate) receivers: Vec<Receiver>,
-    /// What each grid is called: cells along a side, or, of a scene that has meshes only, the number of faces.
+    /// What each grid is called: cells along a side, or, of a scene that has meshes only, the number of
+    /// faces.
     pub(crate) labels: Vec<u32>,
     /// Names of the scene's receivers that take part.
     pub(crate) names: Vec<String>,
@@ -24,7 +25,8 @@ pub struct Grids<'s> {
 }
 
 impl<'s> Grids<'s> {
-    /// The receivers of a scene with `k` x `k` cells for each `k`; where it has none with cells, its meshes by faces.
+    /// The receivers of a scene with `k` x `k` cells for each `k`; where it has none with cells, its meshes
+    /// by faces.
     ///
     /// # Errors
     /// No receiver, no grid, a grid of no cells or more than [`MOST_CELLS`] a side.

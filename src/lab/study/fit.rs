@@ -1,8 +1,8 @@
 //! How an error falls with the number of photons: error = c N^rate, by least squares on logarithms.
 //!
-//! Every seed gives a slope of its own; the rate is their mean and its standard error their spread over the root of their
-//! number. The errors of one seed at several N share points, so the residuals about one line would say less than there
-//! is to say; they are used only where there is a single seed.
+//! Every seed gives a slope of its own; the rate is their mean and its standard error their spread over the
+//! root of their number. The errors of one seed at several N share points, so the residuals about one line
+//! would say less than there is to say; they are used only where there is a single seed.
 
 use std::collections::BTreeSet;
 
@@ -53,21 +53,19 @@ pub struct Prediction {
 }
 
 impl Law {
-    /// The law of errors measured with one or several seeds, each at two or more numbers of photons. The levels of a
-    /// seed may stand in any order. It goes through the middle, in logarithms, of the root mean squares over the seeds.
+    /// The law of errors measured with one or several seeds, each at two or more numbers of photons. The
+    /// levels of a seed may stand in any order. It goes through the middle, in logarithms, of the root mean
+    /// squares over the seeds.
     ///
-    /// A seed's errors that are not positive and finite have no logarithm: they are left out, and so is what is not
-    /// [`fitted`]. `None` when no seed has two levels.
+    /// A seed's errors that are not positive and finite have no logarithm: they are left out, and so is what
+    /// is not [`fitted`]. `None` when no seed has two levels.
     pub fn fit(seeds: &[Vec<Level>]) -> Option<Self> {
         let usable = |level: &&Level| level.photons > 0 && level.error > 0.0 && level.error.is_finite();
-        let all: Vec<Vec<Level>> =
+        let mut chosen: Vec<Vec<Level>> =
             seeds.iter().map(|levels| levels.iter().filter(usable).copied().collect()).collect();
-        let measured = distinct(all.iter().flatten().map(|l| l.photons));
+        let measured = distinct(chosen.iter().flatten().map(|l| l.photons));
         let used = fitted(&measured);
-        let chosen: Vec<Vec<Level>> = all
-            .iter()
-            .map(|levels| levels.iter().filter(|l| used.contains(&l.photons)).copied().collect())
-            .collect();
+        chosen.iter_mut().for_each(|levels| levels.retain(|l| used.contains(&l.photons)));
         let lines: Vec<Line> = chosen.iter().filter_map(|levels| Line::through(levels)).collect();
         if lines.is_empty() {
             return None;
@@ -147,8 +145,8 @@ impl Line {
     }
 }
 
-/// Which of these numbers of photons a law is fitted to: the powers of two, if there are two or more of them. Other N cost
-/// a net part of its evenness, and belong to another law.
+/// Which of these numbers of photons a law is fitted to: the powers of two, if there are two or more of them.
+/// Other N cost a net part of its evenness, and belong to another law.
 pub(crate) fn fitted(ladder: &[u64]) -> Vec<u64> {
     let powers: Vec<u64> = ladder.iter().copied().filter(|n| n.is_power_of_two()).collect();
     if powers.len() >= 2 { powers } else { ladder.to_vec() }
@@ -203,7 +201,8 @@ mod tests {
 
     #[test]
     fn one_seed_is_judged_by_its_residuals() {
-        // ln error / ln 2 = 0, -1, -1 at ln N / ln 2 = 0, 1, 2: slope -1/2, residuals +-1/6, 1/3, variance 1/6, xx 2.
+        // ln error / ln 2 = 0, -1, -1 at ln N / ln 2 = 0, 1, 2: slope -1/2, residuals +-1/6, 1/3, variance
+        // 1/6, xx 2.
         let seed = [(1, 1.0), (2, 0.5), (4, 0.5)].map(|(photons, error)| Level { photons, error }).to_vec();
         let law = Law::fit(std::slice::from_ref(&seed)).unwrap();
         assert!((law.rate + 0.5).abs() < 1e-15);

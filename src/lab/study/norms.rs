@@ -1,6 +1,8 @@
-//! How far one map of illuminance is from another (METHOD 6): three norms over cells, and the reference's own error.
+//! How far one map of illuminance is from another (METHOD 6): three norms over cells, and the reference's own
+//! error.
 //!
-//! E is the estimated, E* the reference illuminance of a cell, A its area; sums go over all cells of all receivers.
+//! E is the estimated, E* the reference illuminance of a cell, A its area; sums go over all cells of all
+//! receivers.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +23,8 @@ impl Errors {
     /// All three norms of an estimate against the reference, lx and m2, cell by cell.
     ///
     /// # Errors
-    /// [`Kind::Range`] when the numbers of cells differ, or the reference has no light or none that is finite.
+    /// [`Kind::Range`] when the numbers of cells differ, or the reference has no light or none that is
+    /// finite.
     pub fn of(estimate_lx: &[f64], reference_lx: &[f64], areas_m2: &[f64]) -> Result<Self> {
         let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
         let (estimates, references) = (estimate_lx.len(), reference_lx.len());
@@ -46,8 +49,8 @@ impl Errors {
         })
     }
 
-    /// Over seeds: root mean square of `relative_rms` and `nrms`, mean of `relative_l1`; beside them the standard deviation
-    /// of `nrms`.
+    /// Over seeds: root mean square of `relative_rms` and `nrms`, mean of `relative_l1`; beside them the
+    /// standard deviation of `nrms`.
     pub fn over_seeds(seeds: &[Self]) -> (Self, Option<f64>) {
         let of = |norm: fn(&Self) -> f64| seeds.iter().map(norm).collect::<Vec<f64>>();
         let nrms = of(|e| e.nrms);
@@ -60,11 +63,11 @@ impl Errors {
     }
 }
 
-/// nRMS to expect of the mean of R replicates against the truth: sqrt( sum A s^2 / R / sum A ) over the mean, s^2 the
-/// variance of a cell over the replicates with R - 1 degrees of freedom.
+/// nRMS to expect of the mean of R replicates against the truth: sqrt( sum A s^2 / R / sum A ) over the mean,
+/// s^2 the variance of a cell over the replicates with R - 1 degrees of freedom.
 ///
-/// `sum_lx` and `square_lx2` hold a cell's sum and sum of squares over the replicates ([`moments`]). `None` for fewer than
-/// two replicates or without light.
+/// `sum_lx` and `square_lx2` hold a cell's sum and sum of squares over the replicates ([`moments`]). `None`
+/// for fewer than two replicates or without light.
 pub(crate) fn nrms_of_mean(
     sum_lx: &[f64],
     square_lx2: &[f64],
@@ -130,7 +133,8 @@ mod tests {
 
     #[test]
     fn the_error_of_a_mean_of_replicates_is_that_of_the_textbook() {
-        // Two cells, three replicates: 1 2 3 and 4 4 7. Variances 1 and 3, of the means 1/3 and 1; means 2 and 5.
+        // Two cells, three replicates: 1 2 3 and 4 4 7. Variances 1 and 3, of the means 1/3 and 1; means 2
+        // and 5.
         let (sums, squares) = ([6.0, 15.0], [14.0, 81.0]);
         let error = nrms_of_mean(&sums, &squares, &[1.0, 3.0], 3).unwrap();
         let by_hand = ((1.0 / 3.0 + 3.0 * 1.0) / 4.0_f64).sqrt() / ((2.0 + 15.0) / 4.0);

@@ -1,8 +1,8 @@
 //! The reference that errors are measured against (METHOD 6).
 //!
-//! It shares as little as possible with what is measured: another sequence (Halton points under a rotation), another
-//! emission map (directions uniform in solid angle, weighted by the intensity) and another seed. Its own error comes from
-//! independent replicates.
+//! It shares as little as possible with what is measured: another sequence (Halton points under a rotation),
+//! another emission map (directions uniform in solid angle, weighted by the intensity) and another seed. Its
+//! own error comes from independent replicates.
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -22,7 +22,8 @@ use super::norms::{Errors, moments, nrms_of_mean};
 
 /// Replicates of a reference: 7 degrees of freedom for its error.
 pub const REPLICATES: u32 = 8;
-/// Most photons of a reference: 2^32 in a replicate, so that weights in fixed point keep 16 bits behind the point.
+/// Most photons of a reference: 2^32 in a replicate, so that weights in fixed point keep 16 bits behind the
+/// point.
 pub const MOST_REFERENCE_PHOTONS: u64 = REPLICATES as u64 * (1 << 32);
 /// Headroom of the fixed-point sums: light that comes back to one cell up to 2^16 times.
 const HEADROOM_BITS: u32 = 16;
@@ -169,7 +170,8 @@ mod tests {
         for (photons, each) in [(1, 1), (8, 1), (9, 2), (100, 16), (1 << 35, 1 << 32)] {
             let plan = plan(photons, &[1]).unwrap();
             assert_eq!((plan.photons_per_replicate, plan.photons()), (each, 8 * each));
-            // Of a weight of 1 in every photon 2^16 times the sum still fits 64 bits; 16 bits are behind the point.
+            // Of a weight of 1 in every photon 2^16 times the sum still fits 64 bits; 16 bits are behind the
+            // point.
             assert_eq!(plan.units_per_photon() * each as f64, (1u64 << 48) as f64);
         }
         assert!(plan(0, &[]).is_err() && plan((1 << 35) + 1, &[]).is_err() && plan(u64::MAX, &[]).is_err());

@@ -1,5 +1,5 @@
-//! What a study measured, as plain data: written, read back and shown, nothing computed. [`super::table`] draws from it
-//! what is reported.
+//! What a study measured, as plain data: written, read back and shown, nothing computed. [`super::table`]
+//! draws from it what is reported.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,8 +8,8 @@ use super::norms::Errors;
 /// The variant that others are compared with.
 pub const BASELINE: &str = "mc";
 
-/// The paper's four algorithms: the name of the variant here, and how much less error than Monte Carlo the paper gives
-/// (METHOD 6) for a scene like the built-in one at 4 456 448 photons.
+/// The paper's four algorithms: the name of the variant here, and how much less error than Monte Carlo the
+/// paper gives (METHOD 6) for a scene like the built-in one at 4 456 448 photons.
 pub const PAPER_RATIOS: [(&str, f64); 4] =
     [("mc", 1.0), ("qmc", 1.59), ("qmc-inverse", 1.93), ("qmc-inverse-reuse", 2.19)];
 

@@ -13,10 +13,12 @@ use crate::transport::parallel::Traced;
 use super::reference::Reference;
 use super::results::Run;
 
-/// Photons that a ladder starts with where none is named: 256 below the largest, a square of the noise's fall.
+/// Photons that a ladder starts with where none is named: 256 below the largest, a square of the noise's
+/// fall.
 pub const LADDER_OCTAVES: u32 = 8;
 
-/// The numbers of photons at which errors are taken: powers of two from `from` to `until`, and `until` itself.
+/// The numbers of photons at which errors are taken: powers of two from `from` to `until`, and `until`
+/// itself.
 pub fn ladder(from: u64, until: u64) -> Vec<u64> {
     let mut rungs: Vec<u64> = (0..64).map(|m| 1u64 << m).filter(|n| (from..until).contains(n)).collect();
     rungs.push(until);
@@ -24,11 +26,11 @@ pub fn ladder(from: u64, until: u64) -> Vec<u64> {
 }
 
 impl Reference<'_> {
-    /// Traces one point set (R = 1: one set of N points, METHOD 7) and takes its errors against this reference at every
-    /// rung of the ladder, which rises; `None` after an interrupt.
+    /// Traces one point set (R = 1: one set of N points, METHOD 7) and takes its errors against this
+    /// reference at every rung of the ladder, which rises; `None` after an interrupt.
     ///
-    /// The first N points of a sequence are a set of their own, so that one pass serves every rung; a sequence that must
-    /// know N is traced anew for each.
+    /// The first N points of a sequence are a set of their own, so that one pass serves every rung; a
+    /// sequence that must know N is traced anew for each.
     ///
     /// # Errors
     /// A sequence that cannot have this many points; a system that does not tell its processor time.

@@ -61,13 +61,11 @@ impl Table {
     /// All rows and trends of a study.
     pub fn new(study: &Study) -> Self {
         let photons_per_cpu_s: Vec<Option<f64>> = study.variants.iter().map(|v| speed(&v.runs)).collect();
-        let mut rows: Vec<Row> =
-            (0..study.variants.len()).flat_map(|variant| rows_of_variant(study, variant)).collect();
-        let trends: Vec<Vec<Trend>> = (0..study.variants.len())
-            .map(|v| {
-                (0..study.grids.len()).map(|g| trend(study, &rows, v, g, photons_per_cpu_s[v])).collect()
-            })
-            .collect();
+        let variants = || 0..study.variants.len();
+        let mut rows: Vec<Row> = variants().flat_map(|variant| rows_of_variant(study, variant)).collect();
+        let on_grid = |v: usize, grid: usize| trend(study, &rows, v, grid, photons_per_cpu_s[v]);
+        let trends_of = |v: usize| (0..study.grids.len()).map(|grid| on_grid(v, grid)).collect();
+        let trends: Vec<Vec<Trend>> = variants().map(trends_of).collect();
         if let Some(baseline) = study.baseline() {
             compare_with(baseline, &mut rows, &trends, photons_per_cpu_s[baseline]);
         }
@@ -138,15 +136,12 @@ fn trend(study: &Study, rows: &[Row], variant: usize, grid: usize, speed: Option
 }
 
 fn compare_with(baseline: usize, rows: &mut [Row], trends: &[Vec<Trend>], speed: Option<f64>) {
-    let measured: Vec<(u64, usize, f64)> =
-        rows.iter().filter(|r| r.variant == baseline).map(|r| (r.photons, r.grid, r.errors.nrms)).collect();
+    let measured: Vec<Row> = rows.iter().filter(|r| r.variant == baseline).cloned().collect();
     for row in rows {
         let own = row.errors.nrms;
         let ratio = |error: f64| Some(error / own).filter(|r| r.is_finite());
-        row.ratio_equal_n = measured
-            .iter()
-            .find(|(photons, grid, _)| (*photons, *grid) == (row.photons, row.grid))
-            .and_then(|(_, _, error)| ratio(*error));
+        let mut same = measured.iter().filter(|r| (r.photons, r.grid) == (row.photons, row.grid));
+        row.ratio_equal_n = same.next().and_then(|r| ratio(r.errors.nrms));
         row.ratio_equal_time = if row.variant == baseline {
             // Its own time gives its own error: no law is needed to know that.
             ratio(own).map(|value| Prediction { value, extrapolated: false })
