@@ -6,12 +6,14 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Duration;
 
-use caustix::emitter::{Emitter, Emitters, Photometric};
+use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
 use caustix::files::lm63;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
-use caustix::sample::cell::{Cell, Row};
+use caustix::sample::angles::Row;
+use caustix::sample::cell::Cell;
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::sobol::SobolPoints;
@@ -42,8 +44,9 @@ fn largest() -> Photometry {
 
 fn lamp(photometry: &Photometry) -> Emitters {
     let aim = DVec3::new(0.1, -0.2, -1.0);
-    let e = Photometric::new(photometry, DVec3::Z, aim, DVec3::Y, None).unwrap();
-    Emitters::new(vec![Emitter::Photometric(Box::new(e))]).unwrap()
+    let frame = AimFrame::new(aim, None).unwrap();
+    let e = Photometric::new(photometry, DVec3::Z, frame, None).unwrap();
+    Emitters::new(vec![Emitter::Photometric(e)]).unwrap()
 }
 
 fn emissions<P: Points>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, lamp: &Emitters, points: &P) {
@@ -52,7 +55,11 @@ fn emissions<P: Points>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, la
         b.iter(|| {
             let mut sum = DVec3::ZERO;
             for i in first..first + BATCH {
-                sum += lamp.emit(&mut Coordinates::new(points, i, true)).1.direction;
+                sum += lamp
+                    .emit(Sampling::default(), &mut Coordinates::new(points, i, true))
+                    .unwrap()
+                    .1
+                    .direction;
             }
             first = (first + BATCH) % (1 << 24);
             black_box(sum)
@@ -89,7 +96,13 @@ fn cells() -> Vec<(Row, Cell)> {
     ];
     let rows = [(0.0, 2.5), (2.5, 5.0), (42.5, 45.0), (87.5, 90.0), (60.0, 90.0), (175.0, 180.0)];
     let rows = rows.map(|(from, to): (f64, f64)| Row::new(from.to_radians(), to.to_radians()));
-    rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, 0, 0, c).unwrap()))).collect()
+    rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, c).unwrap()))).collect()
+}
+
+/// F(s) of the cell equation, as the library has it.
+fn mass(row: &Row, cell: &Cell, s: f64) -> f64 {
+    let [a1, a2, b1, b2] = cell.corners;
+    Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(s).0
 }
 
 fn cell_equation(criterion: &mut Criterion) {
@@ -108,11 +121,13 @@ fn cell_equation(criterion: &mut Criterion) {
     }
     // The width of a cell is of order 0.1, so the one absolute tolerance of `roots` serves as a relative one here.
     let rule = || SimpleConvergency { eps: 1e-14, max_iter: 100 };
+    let residual =
+        |row: &Row, cell: &Cell, s: f64, u: f64| mass(row, cell, s) / mass(row, cell, row.width) - u;
     solver("roots: Brent", &|row, cell, u| {
-        find_root_brent(0.0, row.width, |s| cell.theta_cdf(row, s) - u, &mut rule()).unwrap_or(f64::NAN)
+        find_root_brent(0.0, row.width, |s| residual(row, cell, s, u), &mut rule()).unwrap_or(f64::NAN)
     });
     solver("roots: secant", &|row, cell, u| {
-        find_root_secant(0.0, row.width, |s| cell.theta_cdf(row, s) - u, &mut rule()).unwrap_or(f64::NAN)
+        find_root_secant(0.0, row.width, |s| residual(row, cell, s, u), &mut rule()).unwrap_or(f64::NAN)
     });
 }
 

@@ -4,8 +4,7 @@
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml;
 use caustix::run::{Algorithm, Plan, Settings, trace};
 use caustix::scene::Scene;
 use caustix::sequence::Sequence;
@@ -14,7 +13,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 const PHOTONS: u64 = 1 << 19;
 
 fn scene() -> Scene {
-    build(&Description::built_in().unwrap()).unwrap()
+    scene_toml::built_in().unwrap().build().unwrap()
 }
 
 fn photons(c: &mut Criterion) {

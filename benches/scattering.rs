@@ -14,10 +14,9 @@ use caustix::sample::coordinates::{Coordinates, Purpose};
 use caustix::sample::grid::Grid;
 use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
-use caustix::sequence::to_unit_f64;
 use caustix::surface::tabulated::{Energy, Options};
 use caustix::surface::{
-    Event, Grey, Incidence, Material, Reflectance, Rgb, Tabulated, Throughput as Carried,
+    Event, Grey, Incidence, Lambertian, Material, Reflectance, Rgb, Tabulated, Throughput as Carried,
 };
 use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
@@ -84,11 +83,8 @@ fn emit(grid: &Grid, first: u64) -> DVec3 {
     let mut sum = DVec3::ZERO;
     for i in first..first + BATCH {
         let mut c = Coordinates::new(&points, i, true);
-        let mut u = c.draw_reusable(Purpose::Emission);
-        let cell = c.choose(grid.choice(), &mut u, Purpose::Emission);
-        let u_theta = c.remainder(u, Purpose::EmissionTheta);
-        let u_phi = to_unit_f64(c.draw(Purpose::EmissionPhi));
-        sum += grid.place(cell, u_theta, u_phi, Solver::DEFAULT).direction;
+        let u = c.draw_reusable(Purpose::Emission);
+        sum += grid.draw_inverse(u, &mut c, Solver::DEFAULT).direction;
     }
     sum
 }
@@ -103,7 +99,7 @@ fn batches() -> Vec<Batch> {
     }
     let grey = table(1, Frame::Specular, vec![0.0]);
     let grid = luminaire(&grey);
-    let lambertian = Material::Lambertian { reflectance: Reflectance::grey(1.0) };
+    let lambertian = Material::Lambertian(Lambertian::new(Reflectance::new(1.0).unwrap()));
     let turn = steps(0.0, 360.0, 10.0);
     vec![
         ("emission of the same grid", Box::new(move |first| emit(&grid, first))),
@@ -183,7 +179,7 @@ fn measured(group: &mut BenchmarkGroup<'_, WallTime>, path: &Path) {
         (Tabulated::new(&table, &options).unwrap().0, values)
     };
     let (tabulated, values) = both();
-    let bytes = tabulated.memory_bytes();
+    let bytes = caustix::surface::memory_bytes(&[Material::Tabulated(Box::new(tabulated))]);
     println!(
         "{}: {values} values, {bytes} bytes, {:.2} a value",
         path.display(),

@@ -14,15 +14,9 @@ const RAYS: usize = 1 << 16;
 fn pane(z_m: f64, seed: u64, stretch: f64, facing: Facing) -> Shape {
     let octaves = [(1.0, 0.30), (0.45, 0.148), (0.12, 0.073)];
     let octaves = octaves.map(|(amplitude, l)| Octave { amplitude, wavelength_m: l * stretch });
-    let field = Heightfield {
-        min: DVec2::splat(-1.4),
-        max: DVec2::splat(1.4),
-        z_m,
-        cells: [128, 128],
-        formula: Formula::Noise(Noise::new(seed, octaves.to_vec(), 0.01).unwrap()),
-        facing,
-        smooth: true,
-    };
+    let formula = Formula::Noise(Noise::new(seed, octaves.to_vec(), 0.01).unwrap());
+    let origin = DVec3::new(-1.4, -1.4, z_m);
+    let field = Heightfield::new(origin, DVec2::splat(2.8), [128, 128], formula).unwrap().facing(facing);
     Shape::Mesh(field.mesh().unwrap())
 }
 

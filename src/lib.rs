@@ -22,11 +22,11 @@
 //!
 //! ```
 //! use caustix::run::{Plan, Settings, trace};
-//! use caustix::scene::{build::build, description::Description};
+//! use caustix::files::scene_toml;
 //! use std::sync::atomic::AtomicBool;
 //!
 //! # fn main() -> Result<(), Vec<caustix::Diagnostic>> {
-//! let scene = build(&Description::built_in()?)?;
+//! let scene = scene_toml::built_in()?.build()?;
 //! let settings = Settings { photons: Some(1 << 14), ..Settings::default() };
 //! let plan = Plan::new(&settings).map_err(|e| vec![e])?;
 //! let interrupt = AtomicBool::new(false);
@@ -86,12 +86,17 @@ pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Sum
 pub use files::bsdf::{parse as parse_scattering, read as read_scattering};
 pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 // Scenes:
-pub use emitter::{Collimated, Emitter, Isotropic, Panel, Photometric};
+pub use emitter::{
+    AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emits, Emitter, Isotropic, Panel, Photometric,
+};
+pub use files::scene_toml::read_scene;
 pub use geometry::{
     Facing, Formula, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing, Sphere,
     Surface, Transform, Wave, box_mesh,
 };
-pub use scene::{Scene, SceneParts};
+pub use scene::camera::{Camera, CameraSpec};
+pub use scene::receiver::{ReceiverEvents, ReceiverSide, ReceiverSpec};
+pub use scene::{Scene, SceneBuilder};
 pub use surface::{Dielectric, Material, Reflectance, Tabulated};
 // Runs:
 pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace};

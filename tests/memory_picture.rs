@@ -12,7 +12,7 @@ use std::sync::atomic::AtomicBool;
 use caustix::picture::{PictureSummary, trace_picture};
 use caustix::scene::Scene;
 use caustix::scene::camera::{Bandwidth, CameraSpec};
-use caustix::surface::{Dielectric, Material, Reflectance};
+use caustix::surface::{Dielectric, Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 use crate::allocator::peak_of;
@@ -29,7 +29,7 @@ fn ball_on_table(table: Material, memory_bytes: u64, bandwidth: Bandwidth, pixel
     };
     let plate = rectangle("table", DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
     let back = rectangle("wall", DVec3::new(-1.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 1.5);
-    let glass = Material::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let light = [
         beam(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z, 0.3, 300.0),
         panel(DVec3::Z * 1.8, DVec3::NEG_Z, DVec3::X, [0.4, 0.4], 700.0),
@@ -47,7 +47,7 @@ fn peak(scene: &Scene, photons: u64) -> (usize, PictureSummary) {
 
 #[test]
 fn photons_take_what_the_camera_has_for_them_and_a_refused_picture_takes_nothing() {
-    let red = Material::Lambertian { reflectance: Reflectance::rgb([0.9, 0.5, 0.4]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.9, 0.5, 0.4]).unwrap()));
     on_threads(2, || {
         for (label, table, bytes_of_photon) in [("one channel", grey(0.5), 28), ("colour", red, 36)] {
             for bandwidth in [Bandwidth::Automatic, Bandwidth::Radius(0.02), Bandwidth::Nearest(100)] {

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
 use crate::files::bsdf::Format;
-use crate::files::scene_toml::source::read_capped;
+use crate::files::bytes::read_capped;
 use crate::report::bsdf::BsdfSummary;
 use crate::report::bsdf_plot::BsdfPlot;
 use crate::report::text::rounded;

@@ -2,12 +2,11 @@
 
 use serde::Serialize;
 
+use crate::emitter::Emits;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
 use crate::picture;
-use crate::picture::camera::Film;
-use crate::picture::camera::splat::Splat;
-use crate::scene::camera::{CameraSpec, Method};
+use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
 use super::{CheckArgs, exit, fail, print, render, warn};
@@ -113,7 +112,10 @@ impl Check {
                     0.0
                 },
             }),
-            memory_mb: ((scene.memory_bytes() + cells * per_cell) as u64 + picture_bytes(scene)) as f64 / 1e6,
+            memory_mb: ((scene.memory_bytes() + cells * per_cell) as u64
+                + scene.camera.as_ref().map_or(0, |c| picture::memory_bytes(c, scene.is_coloured())))
+                as f64
+                / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
         }
@@ -174,21 +176,6 @@ impl Check {
             );
         }
         out + &format!("memory     {:.1} MB\n", self.memory_mb)
-    }
-}
-
-/// What a camera's picture takes while it is made.
-fn picture_bytes(scene: &Scene) -> u64 {
-    fn of<const C: usize>(camera: &CameraSpec) -> u64 {
-        match camera.method {
-            Method::Map => Film::<C>::memory_bytes(camera.pixels),
-            Method::Splat => Splat::<C>::memory_bytes(camera.pixels),
-        }
-    }
-    match &scene.camera {
-        None => 0,
-        Some(camera) if scene.is_coloured() => of::<3>(camera),
-        Some(camera) => of::<1>(camera),
     }
 }
 

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
-use crate::files::scene_toml::source::read_capped;
+use crate::files::bytes::read_capped;
+use crate::files::photon_map;
 use crate::picture;
 use crate::picture::photon_map::SavedMap;
-use crate::picture::photon_map::file::channels;
 use crate::picture::{AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved};
 use crate::report::camera::CameraReport;
 use crate::report::picture::{camera_attributes, write_camera};
@@ -71,17 +71,17 @@ pub(super) fn read(path: &Path, scene: &Scene, plan: &Plan) -> Result<AnyMap> {
     let in_file = |e: Diagnostic| e.in_file(path);
     // Of the same scene, yet of another number of channels: the camera that the photons were traced for saw another background,
     // in colour or not.
-    let saved = match (channels(&bytes).map_err(in_file)?, scene.is_coloured()) {
-        (3, true) => AnyMap::Rgb(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?),
+    let saved = match (photon_map::channels(&bytes).map_err(in_file)?, scene.is_coloured()) {
+        (3, true) => AnyMap::Rgb(photon_map::read(&bytes, &hash).map_err(in_file)?),
         (3, false) => {
-            let saved = SavedMap::<3>::from_bytes(&bytes, &hash).map_err(in_file)?;
+            let saved = photon_map::read::<3>(&bytes, &hash).map_err(in_file)?;
             AnyMap::Grey(saved.in_channels())
         }
         (_, true) => {
-            let saved = SavedMap::<1>::from_bytes(&bytes, &hash).map_err(in_file)?;
+            let saved = photon_map::read::<1>(&bytes, &hash).map_err(in_file)?;
             AnyMap::Rgb(saved.in_channels())
         }
-        (_, false) => AnyMap::Grey(SavedMap::from_bytes(&bytes, &hash).map_err(in_file)?),
+        (_, false) => AnyMap::Grey(photon_map::read(&bytes, &hash).map_err(in_file)?),
     };
     match &saved {
         AnyMap::Grey(map) => check_saved(scene, map),
@@ -119,7 +119,7 @@ fn save_map<const C: usize>(
     photons: Option<&SavedMap<C>>,
 ) -> Result<()> {
     match photons {
-        Some(map) => write_atomically(path, |out| map.to_writer(out)),
+        Some(map) => write_atomically(path, |out| photon_map::write(map, out)),
         None => Err(Diagnostic::new(
             Kind::Limit,
             format!("--save-map and {} photons, in {} passes", summary.photons_kept, summary.passes),

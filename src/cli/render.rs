@@ -5,9 +5,7 @@ use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
-use crate::files::scene_toml;
-use crate::files::scene_toml::build;
-use crate::files::scene_toml::description::{Description, RunDescription};
+use crate::files::scene_toml::{self, RunDefaults};
 use crate::picture::{AnyPicture, Watch, trace_picture};
 use crate::report::camera::CameraReport;
 use crate::report::saved::SavedReport;
@@ -24,13 +22,13 @@ use super::{RenderArgs, count, exit, fail, not_available, picture, print, say, w
 pub(super) const MAX_THREADS: u32 = 1024;
 
 /// Reads and builds a scene; without a path the built-in one.
-pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDescription), Vec<Diagnostic>> {
-    let description = match path {
+pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
+    let file = match path {
         Some(path) => scene_toml::read(path)?,
-        None => Description::built_in()?,
+        None => scene_toml::built_in()?,
     };
-    let run = description.run;
-    Ok((build::build(&description)?, run))
+    let run = file.run;
+    Ok((file.build()?, run))
 }
 
 /// Runs the subcommand; the exit code.
@@ -56,7 +54,7 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
     let (scene, run) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
     picture::check(args, &scene).map_err(one)?;
-    let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons.map(|p| p.value));
+    let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons);
     let plan = plan(args, &run, asked).map_err(one)?;
     if let Some(map) = &args.map {
         catch_interrupts();
@@ -128,9 +126,9 @@ fn seen_wholly(unseen: u64, directory: &Path) -> u8 {
 }
 
 /// The command line where it speaks, else the scene's [run], else the defaults.
-fn plan(args: &RenderArgs, run: &RunDescription, photons: Option<u64>) -> Result<Plan> {
+fn plan(args: &RenderArgs, run: &RunDefaults, photons: Option<u64>) -> Result<Plan> {
     let mut settings = Settings { photons, ..Settings::default() };
-    settings.seed = args.seed.or(run.seed.map(|p| p.value)).unwrap_or(settings.seed);
+    settings.seed = args.seed.or(run.seed).unwrap_or(settings.seed);
     if let Some(name) = args.variant.as_deref() {
         settings.algorithm = Algorithm::parse(name)
             .map_err(|e| Diagnostic::new(e.kind(), format!("--{}", e.found()), e.required().to_string()))?;
@@ -143,7 +141,7 @@ fn plan(args: &RenderArgs, run: &RunDescription, photons: Option<u64>) -> Result
         })?;
     }
     // A scene's replicates yield to a sequence that can have only one; the command line's do not.
-    let of_scene = run.replicates.map(|p| p.value).filter(|_| settings.algorithm.sequence.is_randomised());
+    let of_scene = run.replicates.filter(|_| settings.algorithm.sequence.is_randomised());
     settings.replicates = args.replicates.or(of_scene);
     Plan::new(&settings)
 }
@@ -154,7 +152,7 @@ fn say_rounding(asked: Option<u64>, plan: &Plan) {
             "caustix: {} photons instead of {}: {} replicates of equal size",
             text::grouped(plan.photons()),
             text::grouped(asked),
-            plan.replicates
+            plan.replicates()
         ));
     }
 }

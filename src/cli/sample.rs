@@ -7,6 +7,7 @@ use std::path::Path;
 use glam::{DMat3, DVec3};
 use serde::Serialize;
 
+use crate::emitter::AimFrame;
 use crate::emitter::photometric::grid_axes;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
@@ -169,7 +170,9 @@ struct Table<'w, W> {
 impl<'w, W: Write> Table<'w, W> {
     fn new(out: &'w mut W, kind: PhotometricType) -> io::Result<Self> {
         out.write_all(b"index,vertical_deg,horizontal_deg,x,y,z,coordinates\n")?;
-        let axes = grid_axes(kind, DVec3::NEG_Z, DVec3::Y).map_err(|e| io::Error::other(e.to_string()))?;
+        let axes = AimFrame::new(DVec3::NEG_Z, Some(DVec3::Y))
+            .and_then(|frame| grid_axes(kind, frame))
+            .map_err(|e| io::Error::other(e.to_string()))?;
         Ok(Self { out, kind, axes, index: 0 })
     }
 

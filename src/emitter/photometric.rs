@@ -11,45 +11,44 @@
 //! | A | cos V (cos H a + sin H r) + sin V u |
 //! | B | cos H (cos V a + sin V u) + sin H r |
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 
-use super::Emission;
-use crate::error::{Diagnostic, Kind, Result};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, frame};
+use crate::error::Invalid;
+use crate::error::invalid::positive;
 use crate::math::frame::frame_from_axis;
-use crate::math::solve::Solver;
 use crate::photometry::Photometry;
 use crate::photometry::web::PhotometricType;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::Coordinates;
-use crate::sample::grid::{Grid, GridPoint};
+use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
-use crate::sample::rejection::UniformMap;
+use crate::sample::uniform_map::UniformMap;
 use crate::sequence::Points;
 
 /// A photometric point emitter.
 #[derive(Debug, Clone)]
 pub struct Photometric {
-    grid: Grid,
+    grid: Arc<Grid>,
     /// Columns: where the grid's x, y and polar axis z point in the world.
     axes: DMat3,
     position: DVec3,
     flux_lm: f64,
     /// Candela per unit of the grid's value.
     scale: f64,
+    /// Of references: directions uniform in solid angle, with weights.
+    uniform: Option<Arc<UniformMap>>,
 }
 
 /// Axes of the unfolded grid (polar axis z, azimuth from x towards y) in the world, for each photometric type.
 ///
 /// # Errors
-/// `aim` or `up` without a direction, or parallel to each other.
-pub fn grid_axes(kind: PhotometricType, aim: DVec3, up: DVec3) -> Result<DMat3> {
-    let frame = frame_from_axis(aim, up).ok_or_else(|| {
-        Diagnostic::new(
-            Kind::Range,
-            format!("aim {aim} and up {up}"),
-            "two directions that are neither zero nor parallel",
-        )
-    })?;
+/// None for a frame, whose directions are neither zero nor parallel.
+pub fn grid_axes(kind: PhotometricType, frame: AimFrame) -> Result<DMat3, Invalid> {
+    let parallel = Invalid::Parallel { what: "up", to: "aim" };
+    let frame = frame_from_axis(frame.aim(), frame.up()).ok_or(parallel)?;
     let (u, a) = (frame.x_axis, frame.z_axis);
     let r = a.cross(u);
     Ok(match kind {
@@ -61,41 +60,43 @@ pub fn grid_axes(kind: PhotometricType, aim: DVec3, up: DVec3) -> Result<DMat3> 
     })
 }
 
+/// What a table's sampler refuses, as the file's fault.
+fn of_file(refused: impl Into<crate::error::Diagnostic>) -> Invalid {
+    let refused = refused.into();
+    Invalid::Content { what: "file", found: refused.found().into(), required: refused.required().into() }
+}
+
 impl Photometric {
-    /// The emitter of a photometric file. `flux_lm` rescales it; without, the file's candela stand, times ballast factor
-    /// and (1986, 1991) field 12.
+    /// The emitter of a photometric file at `position` (m). `flux_lm` rescales it; without, the file's candela stand, times
+    /// ballast factor and (1986, 1991) field 12.
     ///
     /// # Errors
-    /// A table that emits nothing; an aim and up without a frame.
+    /// A table that emits nothing; a position or flux out of range or not a number.
     pub fn new(
         photometry: &Photometry,
         position: DVec3,
-        aim: DVec3,
-        up: DVec3,
+        frame: AimFrame,
         flux_lm: Option<f64>,
-    ) -> Result<Self> {
+    ) -> Result<Self, Invalid> {
         let full = photometry.web.full_grid();
-        let grid = Grid::new(&full.polar_rad, &full.azimuth_rad, &full.intensity_cd)?;
-        let emitted_lm = grid.integral() * photometry.factor();
-        let flux_lm = flux_lm.unwrap_or(emitted_lm);
-        let axes = grid_axes(photometry.web.photometric_type, aim, up)?;
-        let scale = flux_lm / grid.integral();
-        Ok(Self { grid, axes, position, flux_lm, scale })
+        let grid = Grid::new(&full.polar_rad, &full.azimuth_rad, &full.intensity_cd).map_err(of_file)?;
+        let flux_lm = match flux_lm {
+            Some(flux_lm) => frame::flux(flux_lm)?,
+            None => positive("flux_lm", grid.integral() * photometry.factor(), "a file of positive flux")?,
+        };
+        let axes = grid_axes(photometry.web.photometric_type, frame)?;
+        let (scale, position) = (flux_lm / grid.integral(), frame::place(position)?);
+        Ok(Self { grid: Arc::new(grid), axes, position, flux_lm, scale, uniform: None })
     }
 
-    /// Luminous flux, lm.
-    pub fn flux_lm(&self) -> f64 {
-        self.flux_lm
-    }
-
-    /// Where it is.
-    pub fn position(&self) -> DVec3 {
-        self.position
-    }
-
-    /// The sampler's table.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
+    /// The same light for references: directions uniform in solid angle where the table is not zero, with weights (1 on
+    /// average) that make their intensity the table's.
+    ///
+    /// # Errors
+    /// None for an emitter, whose table emits.
+    pub(super) fn with_weights(&self) -> Result<Self, Invalid> {
+        let map = UniformMap::new(&self.grid).map_err(of_file)?;
+        Ok(Self { uniform: Some(Arc::new(map)), ..self.clone() })
     }
 
     /// Luminous intensity towards a direction (unit), cd.
@@ -107,43 +108,43 @@ impl Photometric {
         let turned = if phi < 0.0 { phi + 2.0 * std::f64::consts::PI } else { phi };
         self.scale * self.grid.value(theta, phi).max(self.grid.value(theta, turned))
     }
+}
 
-    /// A photon's start: the cell by its flux, theta and phi by inverse functions.
-    #[inline]
-    pub fn emit<P: Points>(
-        &self,
-        u: Reusable,
-        coordinates: &mut Coordinates<'_, P>,
-        solver: Solver,
-    ) -> Emission {
-        self.start(self.grid.draw_inverse(u, coordinates, solver))
+impl Emits for Photometric {
+    fn flux_lm(&self) -> f64 {
+        self.flux_lm
     }
 
-    /// The same by a given way of sampling; `None` where this point of the sequence gives none.
+    fn position(&self) -> DVec3 {
+        self.position
+    }
+
+    /// By inverse functions: the cell by its flux, theta and phi inside it.
     #[inline]
-    pub fn emit_by<P: Points>(
+    fn emit<P: Points>(
         &self,
         sampling: Sampling,
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        self.grid.draw(sampling, u, coordinates).map(|point| self.start(point))
+        let (point, weight) = match &self.uniform {
+            None => (self.grid.draw(sampling, u, coordinates)?, 1.0),
+            Some(map) => map.sample(&self.grid, u, coordinates),
+        };
+        Some(Emission { origin: self.position, direction: self.axes * point.direction, weight })
     }
 
-    /// A photon's start with a direction uniform in solid angle where the table is not zero, and the weight (1 on average)
-    /// that makes its intensity the table's.
-    pub fn emit_weighted<P: Points>(
-        &self,
-        map: &UniformMap,
-        u: Reusable,
-        coordinates: &mut Coordinates<'_, P>,
-    ) -> (Emission, f64) {
-        let (point, weight) = map.sample(&self.grid, u, coordinates);
-        (self.start(point), weight)
+    /// The tabulated intensity itself over the square of the distance.
+    fn direct_light(&self, point: DVec3, _: [f64; 2]) -> Option<DirectLight> {
+        DirectLight::from_point(self.position, point, |direction| self.intensity_cd(direction))
+    }
+
+    fn table(&self) -> Option<&Grid> {
+        Some(&self.grid)
     }
 
     #[inline]
-    fn start(&self, point: GridPoint) -> Emission {
-        Emission { origin: self.position, direction: self.axes * point.direction }
+    fn kind(&self) -> EmitterKind {
+        EmitterKind::new("point", (0, "photometric table"))
     }
 }

@@ -63,6 +63,15 @@ pub enum Invalid {
         /// The angle between them, degrees.
         angle_deg: f64,
     },
+    /// Numbers that are each in their range and make no shape together.
+    Shape {
+        /// The parameter that would have to be another one.
+        what: &'static str,
+        /// What was found, as a clause.
+        found: String,
+        /// What is required, as a clause.
+        required: &'static str,
+    },
     /// Anything else about what a parameter holds.
     Content {
         /// The parameter.
@@ -84,6 +93,7 @@ impl Invalid {
             | Self::NoDirection { what, .. }
             | Self::Parallel { what, .. }
             | Self::Skew { what, .. }
+            | Self::Shape { what, .. }
             | Self::Content { what, .. } => what,
         }
     }
@@ -99,20 +109,31 @@ impl Invalid {
             }
             Self::Parallel { what, to } => format!("{what} parallel to {to}"),
             Self::Skew { what, to, angle_deg } => format!("{what} at {angle_deg:.6} degrees to {to}"),
-            Self::Content { found, .. } => found.clone(),
+            Self::Shape { found, .. } | Self::Content { found, .. } => found.clone(),
         }
     }
 
     /// What is required, as a clause.
     pub fn required(&self) -> String {
         match self {
-            Self::Number { required, .. } | Self::Count { required, .. } | Self::Vector { required, .. } => {
-                (*required).to_string()
-            }
+            Self::Number { required, .. }
+            | Self::Count { required, .. }
+            | Self::Vector { required, .. }
+            | Self::Shape { required, .. } => (*required).to_string(),
             Self::NoDirection { .. } => "a direction [x, y, z] that is not zero".to_string(),
             Self::Parallel { to, .. } => format!("a direction that is not parallel to {to}"),
             Self::Skew { to, .. } => format!("an edge perpendicular to {to}"),
             Self::Content { required, .. } => required.clone(),
+        }
+    }
+}
+
+impl Invalid {
+    /// The class of the broken rule.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Skew { .. } | Self::Shape { .. } => Kind::Geometry,
+            _ => Kind::Range,
         }
     }
 }
@@ -127,7 +148,42 @@ impl std::error::Error for Invalid {}
 
 impl From<Invalid> for Diagnostic {
     fn from(invalid: Invalid) -> Self {
-        Self::new(Kind::Range, invalid.found(), invalid.required())
+        Self::new(invalid.kind(), invalid.found(), invalid.required())
+    }
+}
+
+/// A range of numbers and the words for it: one constant serves the constructor that checks and the reader that explains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Least allowed value.
+    pub low: f64,
+    /// Greatest allowed value.
+    pub high: f64,
+    /// What is required, as a clause with the unit: `a length from 1e-9 to 1e9 m`.
+    pub words: &'static str,
+}
+
+impl Interval {
+    /// Whether a number lies in it. NaN does not.
+    pub fn contains(&self, value: f64) -> bool {
+        value >= self.low && value <= self.high
+    }
+
+    /// The number, if it lies in the interval.
+    ///
+    /// # Errors
+    /// [`Invalid::Number`], for NaN too.
+    pub fn check(&self, what: &'static str, value: f64) -> Result<f64, Invalid> {
+        number(what, value, [self.low, self.high], self.words)
+    }
+
+    /// The vector, if its components lie in the interval.
+    ///
+    /// # Errors
+    /// [`Invalid::Vector`].
+    pub fn vector(&self, what: &'static str, value: DVec3) -> Result<DVec3, Invalid> {
+        let fits = value.to_array().into_iter().all(|x| self.contains(x));
+        if fits { Ok(value) } else { Err(Invalid::Vector { what, value, required: self.words }) }
     }
 }
 

@@ -38,6 +38,15 @@ pub enum Kind {
     Interrupted,
 }
 
+/// A place in a text, both counted from 1; columns count characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
 /// A message about one place in one input: what was found, what is required, what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic(Box<Detail>);
@@ -82,6 +91,15 @@ impl Diagnostic {
         self.0.line = Some(line);
         self.0.column = Some(column);
         self
+    }
+
+    /// The same, at this place if there is one.
+    #[must_use]
+    pub fn placed(self, place: Option<Place>) -> Self {
+        match place {
+            Some(place) => self.at(place.line, place.column),
+            None => self,
+        }
     }
 
     /// The same, with advice on what to do.

@@ -4,10 +4,13 @@
 
 pub mod atomic;
 pub mod bsdf;
+pub mod bytes;
 pub mod exr;
+pub mod height_image;
 pub mod lm63;
 pub mod obj;
 mod obj_text;
 pub mod parts;
+pub mod photon_map;
 pub mod png;
 pub mod scene_toml;

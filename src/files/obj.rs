@@ -1,18 +1,13 @@
 //! Meshes from OBJ files: checked text, read by tobj, checked as a mesh.
 
-use std::io::Read;
 use std::path::Path;
 
 use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
-pub use crate::files::obj_text::MAX_OBJ_ELEMENTS;
 use crate::files::obj_text::{Checked, check};
 use crate::geometry::mesh::NO_NORMAL;
 use crate::geometry::{Mesh, MeshParts, Smoothing, Transform};
-
-/// Bytes an OBJ file may have.
-pub const MAX_OBJ_BYTES: u64 = 1 << 31;
 
 /// What to make of an OBJ file.
 #[derive(Debug, Clone, Copy, Default)]
@@ -23,24 +18,6 @@ pub struct ObjOptions {
     pub smoothing: Smoothing,
     /// Refuse a mesh that is not closed.
     pub closed: bool,
-}
-
-/// Reads a mesh, and the warnings about it.
-///
-/// # Errors
-/// A file that cannot be read or exceeds [`MAX_OBJ_BYTES`]; everything [`parse_obj`] refuses.
-pub fn read_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
-    let unreadable = |e: std::io::Error| {
-        Diagnostic::new(Kind::Io, format!("a file that cannot be read: {e}"), "an OBJ file").in_file(path)
-    };
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    let mut bytes = Vec::new();
-    file.take(MAX_OBJ_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_OBJ_BYTES {
-        let found = format!("more than {MAX_OBJ_BYTES} bytes");
-        return Err(Diagnostic::new(Kind::Limit, found, "a smaller file").in_file(path));
-    }
-    parse_obj(&bytes, path, options)
 }
 
 /// The mesh in the bytes of an OBJ file, and the warnings about it; `name` goes into messages.
@@ -62,7 +39,7 @@ fn parse(bytes: &[u8], options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> 
     let mut checked = check(&String::from_utf8_lossy(bytes))?;
     let load = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
     let models =
-        tobj::load_obj_buf(&mut checked.text.as_bytes(), &load, |_| Err(tobj::LoadError::GenericFailure));
+        tobj::load_obj_buf(&mut checked.geometry.as_bytes(), &load, |_| Err(tobj::LoadError::GenericFailure));
     let (models, _) = models
         .map_err(|e| Diagnostic::new(Kind::Syntax, format!("an OBJ file that gives: {e}"), "an OBJ file"))?;
     let [model] = &models[..] else {

@@ -1,7 +1,8 @@
-//! The text of an OBJ file, checked line by line before the reader sees it: the reader names no lines.
+//! The text of an OBJ file, looked at line by line: tobj names no lines, takes NaN and indices of vertices that do not stand there
+//! yet, divides by weights, and makes faces of long lines.
 //!
-//! Only `v`, `vn` and `f` carry geometry. What passes is written out again as just these, so groups, materials,
-//! texture coordinates, colours and file references never reach the reader.
+//! Only `v`, `vn` and `f` carry geometry. Their lines go on to tobj as they stand, without comments and colours; groups, materials,
+//! texture coordinates and file references do not.
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::MAX_COORDINATE_M;
@@ -16,8 +17,8 @@ const IGNORED: [&str; 12] =
 /// A checked file.
 #[derive(Debug, Default)]
 pub(crate) struct Checked {
-    /// The geometry alone: `v x y z`, `vn x y z`, `f v v v` or `f v//n v//n v//n`.
-    pub text: String,
+    /// The lines `v`, `vn` and `f`.
+    pub geometry: String,
     /// Whether each corner, in file order, names a normal.
     pub corner_has_normal: Vec<bool>,
     /// Line of each face, from 1.
@@ -33,26 +34,19 @@ struct Line<'a> {
 
 impl Line<'_> {
     /// A diagnostic at a word of this line.
-    fn refuse(&self, word: &str, found: String, required: &str) -> Diagnostic {
+    fn refuse(&self, kind: Kind, word: &str, found: String, required: &str) -> Diagnostic {
         let offset = (word.as_ptr() as usize).wrapping_sub(self.text.as_ptr() as usize);
         let column = self.text.get(..offset).map_or(1, |before| before.chars().count() + 1);
-        Diagnostic::new(Kind::Syntax, found, required).at(self.number, column)
+        Diagnostic::new(kind, found, required).at(self.number, column)
     }
 
-    fn number(&self, word: &str) -> Result<f64> {
-        match word.parse::<f64>() {
-            Ok(x) if x.is_finite() && x.abs() <= MAX_COORDINATE_M => Ok(x),
-            Ok(_) => {
-                let required = format!("a finite number up to {MAX_COORDINATE_M:e}");
-                Err(Diagnostic::new(Kind::Range, quote(word), required).at(self.number, self.column(word)))
-            }
-            Err(_) => Err(self.refuse(word, quote(word), "a number")),
-        }
-    }
-
-    fn column(&self, word: &str) -> usize {
-        let offset = (word.as_ptr() as usize).wrapping_sub(self.text.as_ptr() as usize);
-        self.text.get(..offset).map_or(1, |before| before.chars().count() + 1)
+    fn numbers(&self, words: &[&str]) -> Result<Vec<f64>> {
+        let number = |word: &&str| match word.parse::<f64>() {
+            Ok(x) if x.abs() <= MAX_COORDINATE_M => Ok(x),
+            Ok(_) => Err(self.refuse(Kind::Range, word, quote(word), "a finite number up to 1e30")),
+            Err(_) => Err(self.refuse(Kind::Syntax, word, quote(word), "a number")),
+        };
+        words.iter().map(number).collect()
     }
 }
 
@@ -72,7 +66,8 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
         let mut words = content.split_whitespace();
         let Some(keyword) = words.next() else { continue };
         if content.trim_end().ends_with('\\') {
-            return Err(line.refuse(content, "a line continued by \\".into(), "one statement a line"));
+            let found = "a line continued by \\".into();
+            return Err(line.refuse(Kind::Syntax, content, found, "one statement a line"));
         }
         let words: Vec<&str> = words.collect();
         elements += words.len();
@@ -82,23 +77,32 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
         }
         match keyword {
             "v" => {
-                vertex(&line, keyword, &words, &mut checked.text)?;
+                vertex(&line, keyword, &words)?;
+                // Numbers beyond the third are a colour, or a weight of 1.
+                let [x, y, z] = [words[0], words[1], words[2]];
+                checked.geometry.extend(["v ", x, " ", y, " ", z, "\n"]);
                 vertices += 1;
             }
             "vn" => {
-                normal(&line, keyword, &words, &mut checked.text)?;
+                normal(&line, keyword, &words)?;
+                checked.geometry.extend([content, "\n"]);
                 normals += 1;
             }
             "f" => {
-                face(&line, keyword, &words, (vertices, normals), &mut checked)?;
+                face(&line, keyword, &words, (vertices, normals), &mut checked.corner_has_normal)?;
+                checked.geometry.extend([content, "\n"]);
                 checked.face_lines.push(line.number);
             }
             _ if IGNORED.contains(&keyword) => {}
-            _ if checked.warnings.len() < 10 => checked.warnings.push(line.refuse(
-                keyword,
-                format!("{} (ignored)", quote(keyword)),
-                "v, vn, f: polygons are read",
-            )),
+            _ if checked.warnings.len() < 10 => {
+                let found = format!("{} (ignored)", quote(keyword));
+                checked.warnings.push(line.refuse(
+                    Kind::Syntax,
+                    keyword,
+                    found,
+                    "v, vn, f: polygons are read",
+                ));
+            }
             _ => {}
         }
     }
@@ -108,86 +112,68 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
     Ok(checked)
 }
 
-fn write(out: &mut String, keyword: &str, xyz: [f64; 3]) {
-    // The shortest decimal that reads back as the same bits.
-    out.push_str(&format!("{keyword} {:e} {:e} {:e}\n", xyz[0], xyz[1], xyz[2]));
-}
-
-fn vertex(line: &Line, keyword: &str, words: &[&str], out: &mut String) -> Result<()> {
-    let numbers = words.iter().map(|w| line.number(w)).collect::<Result<Vec<f64>>>()?;
-    match numbers[..] {
+fn vertex(line: &Line, keyword: &str, words: &[&str]) -> Result<()> {
+    match line.numbers(words)?[..] {
         // Three more are a colour.
-        [x, y, z] | [x, y, z, _, _, _] => write(out, "v", [x, y, z]),
-        [x, y, z, 1.0] => write(out, "v", [x, y, z]),
-        [_, _, _, w] => return Err(line.refuse(words[3], format!("weight {w}"), "no weight, or 1")),
-        _ => {
-            let found = format!("a vertex of {} numbers", numbers.len());
-            return Err(line.refuse(keyword, found, "x, y, z"));
+        [_, _, _] | [_, _, _, 1.0] | [_, _, _, _, _, _] => Ok(()),
+        [_, _, _, w] => Err(line.refuse(Kind::Syntax, words[3], format!("weight {w}"), "no weight, or 1")),
+        ref other => {
+            let found = format!("a vertex of {} numbers", other.len());
+            Err(line.refuse(Kind::Syntax, keyword, found, "x, y, z"))
         }
     }
-    Ok(())
 }
 
-fn normal(line: &Line, keyword: &str, words: &[&str], out: &mut String) -> Result<()> {
-    let numbers = words.iter().map(|w| line.number(w)).collect::<Result<Vec<f64>>>()?;
-    let [x, y, z] = numbers[..] else {
-        let found = format!("a normal of {} numbers", numbers.len());
-        return Err(line.refuse(keyword, found, "x, y, z"));
-    };
-    if glam::DVec3::new(x, y, z).try_normalize().is_none() {
-        return Err(line.refuse(words[0], "a normal of length 0".into(), "a direction"));
+fn normal(line: &Line, keyword: &str, words: &[&str]) -> Result<()> {
+    match line.numbers(words)?[..] {
+        [x, y, z] if glam::DVec3::new(x, y, z).try_normalize().is_some() => Ok(()),
+        [_, _, _] => Err(line.refuse(Kind::Syntax, words[0], "a normal of length 0".into(), "a direction")),
+        ref other => {
+            let found = format!("a normal of {} numbers", other.len());
+            Err(line.refuse(Kind::Syntax, keyword, found, "x, y, z"))
+        }
     }
-    write(out, "vn", [x, y, z]);
-    Ok(())
 }
 
+/// Notes for each corner whether it names a normal.
 fn face(
     line: &Line,
     keyword: &str,
     words: &[&str],
     (vertices, normals): (usize, usize),
-    checked: &mut Checked,
+    corner_has_normal: &mut Vec<bool>,
 ) -> Result<()> {
     if words.len() < 3 {
         let found = format!("a face of {} corners", words.len());
-        return Err(line.refuse(keyword, found, "at least three"));
+        return Err(line.refuse(Kind::Syntax, keyword, found, "at least three"));
     }
-    checked.text.push('f');
     for word in words {
-        let parts: Vec<&str> = word.split('/').collect();
-        if parts.len() > 3 {
-            return Err(line.refuse(word, quote(word), "v, v/vt, v//vn or v/vt/vn"));
+        let mut parts = word.split('/');
+        check_index(line, word, parts.next().unwrap_or_default(), vertices, "vertex")?;
+        if parts.next().is_some_and(|t| !t.is_empty() && t.parse::<i64>().is_err()) {
+            let required = "a whole number for the texture coordinate";
+            return Err(line.refuse(Kind::Syntax, word, quote(word), required));
         }
-        let v = resolve(line, word, parts[0], vertices, "vertex")?;
-        if let Some(vt) = parts.get(1).filter(|t| !t.is_empty())
-            && vt.parse::<i64>().is_err()
-        {
-            return Err(line.refuse(word, quote(word), "a whole number for the texture coordinate"));
+        let normal = parts.next();
+        if let Some(normal) = normal {
+            check_index(line, word, normal, normals, "normal")?;
         }
-        let n = match parts.get(2) {
-            Some(n) => Some(resolve(line, word, n, normals, "normal")?),
-            None => None,
-        };
-        checked.corner_has_normal.push(n.is_some());
-        match n {
-            Some(n) => checked.text.push_str(&format!(" {v}//{n}")),
-            None => checked.text.push_str(&format!(" {v}")),
+        if parts.next().is_some() {
+            return Err(line.refuse(Kind::Syntax, word, quote(word), "v, v/vt, v//vn or v/vt/vn"));
         }
+        corner_has_normal.push(normal.is_some());
     }
-    checked.text.push('\n');
     Ok(())
 }
 
 /// An index from 1; negative ones count back from the last element so far.
-fn resolve(line: &Line, word: &str, index: &str, count: usize, what: &str) -> Result<usize> {
+fn check_index(line: &Line, word: &str, index: &str, count: usize, what: &str) -> Result<()> {
     let Ok(i) = index.parse::<i64>() else {
-        return Err(line.refuse(word, quote(word), &format!("a whole number for the {what}")));
+        return Err(line.refuse(Kind::Syntax, word, quote(word), &format!("a whole number for the {what}")));
     };
-    let from_one = if i < 0 { i128::from(i) + count as i128 + 1 } else { i128::from(i) };
-    if from_one >= 1 && from_one <= count as i128 {
-        return Ok(from_one as usize);
+    if i != 0 && i.unsigned_abs() <= count as u64 {
+        return Ok(());
     }
     let found = format!("{what} {i} where there are {count} so far");
-    Err(Diagnostic::new(Kind::Range, found, format!("1 to {count}, or -{count} to -1"))
-        .at(line.number, line.column(word)))
+    Err(line.refuse(Kind::Range, word, found, &format!("1 to {count}, or -{count} to -1")))
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
-use crate::files::scene_toml::source::sha256_hex;
+use crate::math::digest::sha256_hex;
 
 /// First line of every part.
 const FORMAT: &str = "caustix part 1";

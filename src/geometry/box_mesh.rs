@@ -2,21 +2,24 @@
 
 use glam::DVec3;
 
-use super::{Mesh, MeshParts, Smoothing};
-use crate::error::{Diagnostic, Kind, Result};
+use super::{COORDINATE, LENGTH, Mesh, MeshParts, Smoothing};
+use crate::error::Invalid;
 
 /// The closed axis-parallel box between two corners (m): 12 triangles, normals outward, faces in the order
 /// -x, +x, -y, +y, -z, +z, two triangles each.
 ///
 /// # Errors
-/// A box without volume, or corners out of range.
-pub fn box_mesh(min: DVec3, max: DVec3) -> Result<Mesh> {
-    if !((max - min).min_element() > 0.0) {
-        return Err(Diagnostic::new(
-            Kind::Geometry,
-            format!("a box from ({}, {}, {}) to ({}, {}, {})", min.x, min.y, min.z, max.x, max.y, max.z),
-            "max greater than min in every coordinate",
-        ));
+/// Corners out of range, or a box without volume.
+pub fn box_mesh(min: DVec3, max: DVec3) -> Result<Mesh, Invalid> {
+    COORDINATE.vector("min", min)?;
+    COORDINATE.vector("max", max)?;
+    let extent = max - min;
+    if !(LENGTH.contains(extent.min_element()) && LENGTH.contains(extent.max_element())) {
+        return Err(Invalid::Shape {
+            what: "max",
+            found: format!("a box from {min} to {max}"),
+            required: "each coordinate of max from 1e-9 to 1e9 m above that of min",
+        });
     }
     // Vertex number: bit 0 for x, bit 1 for y, bit 2 for z at the maximum.
     let pick = |bit: usize, lo: f64, hi: f64| if bit == 0 { lo } else { hi };

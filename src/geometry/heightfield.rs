@@ -2,9 +2,16 @@
 
 use glam::{DVec2, DVec3};
 
-use super::transform::check_point;
-use super::{HeightImage, Mesh, MeshParts, Noise, Smoothing};
-use crate::error::{Diagnostic, Kind, Result};
+use super::{ANGLE, COORDINATE, HeightImage, LENGTH, Mesh, MeshParts, Noise, Smoothing};
+use crate::error::Invalid;
+use crate::error::invalid::Interval;
+
+/// Amplitudes of waves and heights of pictures, m.
+pub const HEIGHT: Interval = Interval { low: -1e9, high: 1e9, words: "a height from -1e9 to 1e9 m" };
+/// Most cells of one heightfield: 2^22, eight million triangles.
+pub const MOST_CELLS: u64 = 1 << 22;
+/// What cells must be, in words.
+pub const CELLS_REQUIRED: &str = "[cells along x, cells along y], each at least 1, at most 2^22 in all";
 
 /// A plane wave `a sin(2 pi / l (x cos d + y sin d) + phase)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,33 +50,70 @@ pub enum Facing {
 /// A heightfield: `cells[0] x cells[1] x 2` triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heightfield {
-    /// Least x and y (m).
-    pub min: DVec2,
-    /// Greatest x and y (m).
-    pub max: DVec2,
+    min: DVec2,
+    max: DVec2,
     /// Height of the reference plane (m).
-    pub z_m: f64,
-    /// Cells along x and y.
-    pub cells: [u32; 2],
-    /// The height over the reference plane.
-    pub formula: Formula,
-    /// Which way the outward normal points.
-    pub facing: Facing,
-    /// Smooth normals: the formula's, or finite differences for an image.
-    pub smooth: bool,
+    z_m: f64,
+    cells: [u32; 2],
+    formula: Formula,
+    facing: Facing,
+    smooth: bool,
 }
 
-/// Cells a heightfield may have.
-const MAX_CELLS: u64 = 1 << 26;
-
 impl Heightfield {
+    /// A heightfield over the rectangle of this corner of least x and y (m) and this size (m), smooth and facing up. Heights count
+    /// from the corner's z.
+    ///
+    /// # Errors
+    /// Numbers out of range, no cells or more than [`MOST_CELLS`], wavelengths too short for f64 over this rectangle.
+    pub fn new(origin: DVec3, size: DVec2, cells: [u32; 2], formula: Formula) -> Result<Self, Invalid> {
+        COORDINATE.vector("origin", origin)?;
+        LENGTH.check("size", size.x)?;
+        LENGTH.check("size", size.y)?;
+        let number = cells.into_iter().map(u64::from).product();
+        if !(1..=MOST_CELLS).contains(&number) {
+            return Err(Invalid::Count { what: "cells", value: number, required: CELLS_REQUIRED });
+        }
+        let shortest = match &formula {
+            Formula::Waves(waves) => {
+                waves.iter().try_for_each(Wave::check)?;
+                waves.iter().fold(f64::INFINITY, |m, w| m.min(w.wavelength_m))
+            }
+            Formula::Noise(noise) => noise.shortest_wavelength_m(),
+            Formula::Image(_) => f64::INFINITY,
+        };
+        let min = origin.truncate();
+        let max = min + size;
+        let reach = min.abs().max_element().max(max.abs().max_element());
+        if !(reach / shortest <= 1e12) {
+            let found = format!("a wavelength of {shortest} m at {reach} m from the origin");
+            return Err(Invalid::Shape { what: "wavelength", found, required: "at most 1e12 wavelengths" });
+        }
+        Ok(Self { min, max, z_m: origin.z, cells, formula, facing: Facing::Up, smooth: true })
+    }
+
+    /// The same with its outward normal this way.
+    #[must_use]
+    pub fn facing(self, facing: Facing) -> Self {
+        Self { facing, ..self }
+    }
+
+    /// The same with smooth normals (the formula's, or finite differences for an image) or without.
+    #[must_use]
+    pub fn smooth(self, smooth: bool) -> Self {
+        Self { smooth, ..self }
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> u64 {
+        self.cells.into_iter().map(u64::from).product()
+    }
+
     /// The triangles. Cell (i, j) holds triangles `2 (j cells_x + i)` and the next.
     ///
     /// # Errors
-    /// An empty rectangle, no cells or more than 2^26, numbers that are not finite, wavelengths that are not positive
-    /// or too short for f64 over this rectangle.
-    pub fn mesh(&self) -> Result<Mesh> {
-        self.check()?;
+    /// Those of [`Mesh::new`].
+    pub fn mesh(&self) -> Result<Mesh, Invalid> {
         let [nx, ny] = self.cells;
         let columns = u64::from(nx) + 1;
         let mut parts = MeshParts::default();
@@ -133,38 +177,6 @@ impl Heightfield {
             along(self.min.y, self.max.y, j, self.cells[1]),
         )
     }
-
-    fn check(&self) -> Result<()> {
-        check_point("heightfield min", self.min.extend(self.z_m))?;
-        check_point("heightfield max", self.max.extend(self.z_m))?;
-        let size = self.max - self.min;
-        if !(size.min_element() > 0.0) {
-            let found = format!("a heightfield of {} x {} m", size.x, size.y);
-            return Err(Diagnostic::new(Kind::Geometry, found, "max greater than min in x and y"));
-        }
-        let [nx, ny] = self.cells;
-        let cells = u64::from(nx) * u64::from(ny);
-        if cells == 0 || cells > MAX_CELLS {
-            let found = format!("a heightfield of {nx} x {ny} cells");
-            return Err(Diagnostic::new(Kind::Limit, found, format!("1 to {MAX_CELLS} cells")));
-        }
-        let shortest = match &self.formula {
-            Formula::Waves(waves) => {
-                for w in waves {
-                    w.check()?;
-                }
-                waves.iter().fold(f64::INFINITY, |m, w| m.min(w.wavelength_m))
-            }
-            Formula::Noise(noise) => noise.shortest_wavelength_m(),
-            Formula::Image(_) => f64::INFINITY,
-        };
-        let reach = self.min.abs().max_element().max(self.max.abs().max_element());
-        if !(reach / shortest <= 1e12) {
-            let found = format!("a wavelength of {shortest} m at {reach} m from the origin");
-            return Err(Diagnostic::new(Kind::Range, found, "at most 1e12 wavelengths"));
-        }
-        Ok(())
-    }
 }
 
 impl Wave {
@@ -176,14 +188,12 @@ impl Wave {
         (self.amplitude_m * libm::sin(phase), k * (self.amplitude_m * libm::cos(phase)))
     }
 
-    fn check(&self) -> Result<()> {
-        let numbers = [self.amplitude_m, self.direction_deg, self.phase_deg, self.wavelength_m];
-        if numbers.iter().all(|x| x.is_finite()) && self.wavelength_m > 0.0 {
-            return Ok(());
-        }
-        let found =
-            format!("a wave of amplitude {} m and wavelength {} m", self.amplitude_m, self.wavelength_m);
-        Err(Diagnostic::new(Kind::Range, found, "finite numbers and a positive wavelength"))
+    fn check(&self) -> Result<(), Invalid> {
+        HEIGHT.check("amplitude", self.amplitude_m)?;
+        LENGTH.check("wavelength", self.wavelength_m)?;
+        ANGLE.check("direction_deg", self.direction_deg)?;
+        ANGLE.check("phase_deg", self.phase_deg)?;
+        Ok(())
     }
 }
 
@@ -192,15 +202,8 @@ mod tests {
     use super::*;
 
     fn field(formula: Formula, facing: Facing) -> Heightfield {
-        Heightfield {
-            min: DVec2::new(-1.0, 0.0),
-            max: DVec2::new(1.0, 3.0),
-            z_m: 0.5,
-            cells: [40, 60],
-            formula,
-            facing,
-            smooth: true,
-        }
+        let origin = DVec3::new(-1.0, 0.0, 0.5);
+        Heightfield::new(origin, DVec2::new(2.0, 3.0), [40, 60], formula).unwrap().facing(facing)
     }
 
     fn wave() -> Wave {
@@ -242,22 +245,24 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        let ok = field(Formula::Waves(vec![]), Facing::Up);
-        assert!(ok.mesh().is_ok());
-        let bad = [
-            Heightfield { max: ok.min, ..ok.clone() },
-            Heightfield { cells: [0, 3], ..ok.clone() },
-            Heightfield { cells: [u32::MAX, u32::MAX], ..ok.clone() },
-            Heightfield { z_m: f64::NAN, ..ok.clone() },
-            Heightfield { formula: Formula::Waves(vec![Wave { wavelength_m: 0.0, ..wave() }]), ..ok.clone() },
-            Heightfield {
-                formula: Formula::Waves(vec![Wave { wavelength_m: 1e-15, ..wave() }]),
-                ..ok.clone()
-            },
-            Heightfield { formula: Formula::Waves(vec![Wave { phase_deg: f64::INFINITY, ..wave() }]), ..ok },
-        ];
-        for b in bad {
-            assert!(b.mesh().is_err(), "{b:?}");
+        let make = |z, size, cells, waves| {
+            Heightfield::new(DVec3::new(-1.0, 0.0, z), DVec2::new(2.0, size), cells, Formula::Waves(waves))
+        };
+        assert!(make(0.5, 3.0, [40, 60], vec![]).is_ok());
+        for (z, size, cells, waves) in [
+            (0.5, 0.0, [4, 4], vec![]),
+            (0.5, 3.0, [0, 3], vec![]),
+            (0.5, 3.0, [u32::MAX, u32::MAX], vec![]),
+            (f64::NAN, 3.0, [4, 4], vec![]),
+            (0.5, 3.0, [4, 4], vec![Wave { wavelength_m: 0.0, ..wave() }]),
+            (0.5, 3.0, [4, 4], vec![Wave { wavelength_m: 1e-15, ..wave() }]),
+            (0.5, 3.0, [4, 4], vec![Wave { phase_deg: f64::INFINITY, ..wave() }]),
+        ] {
+            assert!(make(z, size, cells, waves.clone()).is_err(), "{z} {size} {cells:?} {waves:?}");
         }
+        // A thousandth of a nanometre wide at a thousand kilometres: sine and cosine would be noise.
+        let far = DVec3::new(1e6, 0.0, 0.0);
+        let short = Formula::Waves(vec![Wave { wavelength_m: 1e-9, ..wave() }]);
+        assert!(Heightfield::new(far, DVec2::ONE, [4, 4], short).is_err());
     }
 }

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::mesh_check::{Topology, inspect};
-use super::transform::{Transform, check_point};
-use crate::error::{Diagnostic, Kind, Result};
+use super::{MAX_COORDINATE_M, Transform};
+use crate::error::invalid::vector;
+use crate::error::{Diagnostic, Invalid};
 
 /// Where smooth normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,12 +57,16 @@ impl Mesh {
     /// # Errors
     /// No triangle, an index that names nothing, a coordinate that is not finite or out of range, a normal without
     /// direction; with `closed`, open or inconsistently oriented edges, with their number.
-    pub fn new(parts: MeshParts, smoothing: Smoothing, closed: bool) -> Result<(Self, Vec<Diagnostic>)> {
+    pub fn new(
+        parts: MeshParts,
+        smoothing: Smoothing,
+        closed: bool,
+    ) -> Result<(Self, Vec<Diagnostic>), Invalid> {
         let mut mesh = weld(parts)?;
         mesh.topology.add(inspect(&mesh.vertices, &mesh.triangles, &mesh.face_numbers));
         if mesh.triangles.is_empty() {
             let found = format!("a mesh of no triangle ({} degenerate ones)", mesh.topology.degenerate.len());
-            return Err(Diagnostic::new(Kind::Geometry, found, "at least one triangle"));
+            return Err(Invalid::Shape { what: "triangles", found, required: "at least one triangle" });
         }
         if closed {
             mesh.topology.require_closed()?;
@@ -134,7 +139,7 @@ impl Mesh {
     ///
     /// # Errors
     /// Coordinates out of range; nothing left; a closed mesh that rounding has opened.
-    pub fn transformed(&self, by: &Transform) -> Result<Self> {
+    pub fn transformed(&self, by: &Transform) -> Result<Self, Invalid> {
         let parts = MeshParts {
             vertices: self.vertices.iter().map(|&v| by.point(v)).collect(),
             triangles: self.triangles.clone(),
@@ -171,13 +176,13 @@ impl Mesh {
 }
 
 /// Checks numbers and indices, makes one vertex of those of bit-equal position, drops triangles that vanish by it.
-fn weld(parts: MeshParts) -> Result<Mesh> {
+fn weld(parts: MeshParts) -> Result<Mesh, Invalid> {
     let MeshParts { vertices, triangles, mut normals, normal_indices, face_numbers } = parts;
     let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(vertices.len());
     let mut welded = Vec::new();
     let mut place = Vec::with_capacity(vertices.len());
-    for (i, &v) in vertices.iter().enumerate() {
-        check_point(&format!("vertex {}", i + 1), v)?;
+    for &v in &vertices {
+        vector("vertices", v, MAX_COORDINATE_M, "finite coordinates up to 1e30 m")?;
         // -0 and 0 are one place.
         let v = v + DVec3::ZERO;
         let next = welded.len() as u32;
@@ -190,7 +195,7 @@ fn weld(parts: MeshParts) -> Result<Mesh> {
     for (i, n) in normals.iter_mut().enumerate() {
         *n = n.try_normalize().ok_or_else(|| {
             let found = format!("normal {} = {} {} {}", i + 1, n.x, n.y, n.z);
-            Diagnostic::new(Kind::Geometry, found, "a finite normal of positive length")
+            Invalid::Shape { what: "normals", found, required: "a finite normal of positive length" }
         })?;
     }
     let mut mesh = Mesh {
@@ -207,7 +212,7 @@ fn weld(parts: MeshParts) -> Result<Mesh> {
         for (corner, &index) in corners.iter_mut().zip(triangle) {
             *corner = *place.get(index as usize).ok_or_else(|| {
                 let found = format!("vertex index {index} (from 0) in face {number}");
-                Diagnostic::new(Kind::Geometry, found, format!("an index below {}", place.len()))
+                Invalid::Shape { what: "triangles", found, required: "an index below the number of vertices" }
             })?;
         }
         if corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0] {
@@ -221,11 +226,12 @@ fn weld(parts: MeshParts) -> Result<Mesh> {
         }
     }
     if !(mesh.normal_indices.is_empty() || mesh.normal_indices.len() == mesh.triangles.len()) {
-        return Err(Diagnostic::new(
-            Kind::Geometry,
-            format!("normal indices for {} triangles", normal_indices.len()),
-            format!("none or as many as triangles: {}", triangles.len()),
-        ));
+        let found = format!("normal indices for {} of {} triangles", normal_indices.len(), triangles.len());
+        return Err(Invalid::Shape {
+            what: "normal_indices",
+            found,
+            required: "none, or those of every triangle",
+        });
     }
     Ok(mesh)
 }

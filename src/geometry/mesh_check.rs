@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::{Diagnostic, Invalid, Kind};
 
 /// Findings about a mesh whose equal vertices have been welded. Faces go by their numbers in the file, from 1.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -44,17 +44,12 @@ impl Topology {
 
     /// # Errors
     /// The mesh is not closed.
-    pub(crate) fn require_closed(&self) -> Result<()> {
+    pub(crate) fn require_closed(&self) -> Result<(), Invalid> {
         if let Some((face, [a, b])) = self.first_open_edge {
-            return Err(Diagnostic::new(
-                Kind::Geometry,
-                format!(
-                    "{} open edges, the first of face {face} from ({}, {}, {}) to ({}, {}, {})",
-                    self.open_edges, a.x, a.y, a.z, b.x, b.y, b.z
-                ),
-                "a closed mesh: every edge shared by two faces",
-            )
-            .hint("vertices are welded only where their coordinates are equal to the last bit"));
+            let found = format!("{} open edges, the first of face {face} from {a} to {b}", self.open_edges);
+            let required = "a closed mesh: every edge shared by two faces, whose vertices are welded only where their \
+                            coordinates are equal to the last bit";
+            return Err(Invalid::Shape { what: "closed", found, required });
         }
         if let Some(face) = self.first_inconsistent {
             let found = format!(
@@ -62,7 +57,7 @@ impl Topology {
                 self.inconsistent_edges
             );
             let required = "a closed mesh: neighbours run through their edge in opposite directions";
-            return Err(Diagnostic::new(Kind::Geometry, found, required));
+            return Err(Invalid::Shape { what: "closed", found, required });
         }
         Ok(())
     }

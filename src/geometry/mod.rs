@@ -12,8 +12,8 @@ mod box_mesh;
 mod bvh;
 mod coincident;
 mod exact;
+mod height_image;
 mod heightfield;
-mod heightfield_image;
 mod inside;
 pub mod mesh;
 mod mesh_check;
@@ -33,23 +33,32 @@ use glam::DVec3;
 
 pub use box_mesh::box_mesh;
 pub use coincident::coincident_surfaces;
-pub use heightfield::{Facing, Formula, Heightfield, Wave};
-pub use heightfield_image::{HeightImage, MAX_HEIGHT_SAMPLES};
+pub use height_image::HeightImage;
+pub use heightfield::{CELLS_REQUIRED, Facing, Formula, HEIGHT, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
 pub use mesh_check::Topology;
-pub use noise::{Noise, Octave};
+pub use noise::{MOST_OCTAVES, Noise, Octave, PEAK, RELATIVE};
 pub use paraboloid::Paraboloid;
 pub use rectangle::Rectangle;
 pub use shape::Shape;
 pub use sphere::Sphere;
-pub use transform::Transform;
+pub use transform::{SCALE, Transform};
 pub use whereabouts::{Side, Whereabouts};
 
+use crate::error::invalid::Interval;
 use crate::error::{Diagnostic, Kind, Result};
 use bvh::Bounds;
 use wide::{Normalisation, WideTree};
 
-/// Largest coordinate (m) that is accepted: products of three still fit an f64 with room.
+/// Coordinates of shapes, m.
+pub const COORDINATE: Interval =
+    Interval { low: -1e9, high: 1e9, words: "a number of metres from -1e9 to 1e9" };
+/// Lengths of shapes, m.
+pub const LENGTH: Interval = Interval { low: 1e-9, high: 1e9, words: "a length from 1e-9 to 1e9 m" };
+/// Angles, degrees.
+pub const ANGLE: Interval = Interval { low: -1e6, high: 1e6, words: "an angle from -1e6 to 1e6 degrees" };
+
+/// Largest coordinate (m) of a mesh: products of three still fit an f64 with room.
 pub const MAX_COORDINATE_M: f64 = 1e30;
 
 /// Number of a surface in its scene, from 0.

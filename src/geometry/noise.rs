@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
-use super::transform::check_point;
-use crate::error::{Diagnostic, Kind, Result};
+use super::LENGTH;
+use crate::error::Invalid;
+use crate::error::invalid::Interval;
 
 /// One octave: its share of the amplitude and the pitch of its lattice (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,27 +26,33 @@ pub struct Noise {
     scale_m: f64,
 }
 
-/// Octaves a noise may have.
-const MAX_OCTAVES: usize = 64;
+/// Peaks of noise, m.
+pub const PEAK: Interval = Interval { low: 0.0, high: 1e9, words: "a height from 0 to 1e9 m" };
+/// Amplitudes of octaves relative to each other.
+pub const RELATIVE: Interval = Interval { low: 0.0, high: 1e9, words: "a relative amplitude from 0 to 1e9" };
+/// Most octaves.
+pub const MOST_OCTAVES: usize = 32;
 
 impl Noise {
     /// A noise of these octaves whose amplitudes sum to `amplitude_m` (m).
     ///
     /// # Errors
-    /// No octave or too many, amplitudes or wavelengths that are not positive and finite.
-    pub fn new(seed: u64, octaves: Vec<Octave>, amplitude_m: f64) -> Result<Self> {
-        if octaves.is_empty() || octaves.len() > MAX_OCTAVES {
-            let found = format!("noise of {} octaves", octaves.len());
-            return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_OCTAVES} octaves")));
-        }
-        check_point("noise amplitude", glam::DVec3::splat(amplitude_m))?;
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        if let Some(o) = octaves.iter().find(|o| !(positive(o.amplitude) && positive(o.wavelength_m))) {
-            let found =
-                format!("a noise octave of amplitude {} and wavelength {} m", o.amplitude, o.wavelength_m);
-            return Err(Diagnostic::new(Kind::Range, found, "positive numbers"));
+    /// No octave of an amplitude above 0, more than [`MOST_OCTAVES`], numbers out of range.
+    pub fn new(seed: u64, octaves: Vec<Octave>, amplitude_m: f64) -> Result<Self, Invalid> {
+        PEAK.check("amplitude", amplitude_m)?;
+        for octave in &octaves {
+            RELATIVE.check("amplitude", octave.amplitude)?;
+            LENGTH.check("wavelength", octave.wavelength_m)?;
         }
         let total: f64 = octaves.iter().map(|o| o.amplitude).sum();
+        if octaves.len() > MOST_OCTAVES || !(total > 0.0) {
+            let found = format!("{} octaves of amplitudes that sum to {total}", octaves.len());
+            return Err(Invalid::Content {
+                what: "octaves",
+                found,
+                required: "at least one octave of an amplitude above 0".into(),
+            });
+        }
         Ok(Self { seed, octaves, scale_m: amplitude_m / total })
     }
 

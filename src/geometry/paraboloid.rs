@@ -5,8 +5,9 @@ use glam::DVec3;
 use super::exact::exact_difference;
 use super::ray::Ray;
 use super::sphere::{GAMMA, Root};
-use super::transform::{Transform, check_point};
-use crate::error::{Diagnostic, Kind, Result};
+use super::{COORDINATE, LENGTH, Transform};
+use crate::error::Invalid;
+use crate::math::frame::unit;
 
 /// A bowl: points at height `r^2 / (4 f)` over the vertex along the axis, out to the rim radius. The outward normal
 /// points to the side of the focus. Open.
@@ -25,19 +26,18 @@ impl Paraboloid {
     /// Vertex (m), axis (towards the focus, any length), focal length (m) and rim radius (m).
     ///
     /// # Errors
-    /// A length that is not positive, an axis without direction, coordinates out of range.
-    pub fn new(vertex: DVec3, axis: DVec3, focal_length: f64, radius: f64) -> Result<Self> {
-        check_point("paraboloid vertex", vertex)?;
-        check_point("paraboloid axis", axis)?;
-        let size = focal_length.max(radius);
-        if !(focal_length > 0.0 && radius > 0.0) {
-            let found = format!("a paraboloid of focal length {focal_length} m and radius {radius} m");
-            return Err(Diagnostic::new(Kind::Geometry, found, "a positive focal length and radius"));
-        }
-        check_point("paraboloid rim", DVec3::new(size, radius * (radius / focal_length), 0.0))?;
-        let Some(axis) = axis.try_normalize() else {
-            return Err(Diagnostic::new(Kind::Geometry, "a paraboloid axis of length 0", "a direction"));
-        };
+    /// An axis without direction, coordinates or lengths out of range.
+    pub fn new(vertex: DVec3, axis: DVec3, focal_length: f64, radius: f64) -> Result<Self, Invalid> {
+        let unit = unit(axis).ok_or(Invalid::NoDirection { what: "axis", value: axis })?;
+        Self::about(vertex, unit, focal_length, radius)
+    }
+
+    /// The same about an axis of length 1 but for rounding.
+    fn about(vertex: DVec3, axis: DVec3, focal_length: f64, radius: f64) -> Result<Self, Invalid> {
+        COORDINATE.vector("vertex", vertex)?;
+        LENGTH.check("focal_length", focal_length)?;
+        LENGTH.check("radius", radius)?;
+        let axis = axis.normalize();
         let x = perpendicular(axis);
         Ok(Self { vertex, axis, focal_length, radius, x, y: axis.cross(x) })
     }
@@ -87,9 +87,9 @@ impl Paraboloid {
     ///
     /// # Errors
     /// A scale that is not uniform.
-    pub fn transformed(&self, by: &Transform) -> Result<Self> {
-        let s = by.uniform_scale("paraboloid")?;
-        Self::new(by.point(self.vertex), by.rotate(self.axis), self.focal_length * s, self.radius * s)
+    pub fn transformed(&self, by: &Transform) -> Result<Self, Invalid> {
+        let s = by.uniform_scale()?;
+        Self::about(by.point(self.vertex), by.rotate(self.axis), self.focal_length * s, self.radius * s)
     }
 
     /// (1 + r^2 / 4 f^2)^(3/2) - 1 without cancellation for shallow bowls.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::transform::{Transform, check_point};
-use crate::error::{Diagnostic, Kind, Result};
+use super::{COORDINATE, LENGTH, Transform};
+use crate::error::Invalid;
 
 /// A rectangle: a corner and two perpendicular edges; the outward normal is `edge_u x edge_v`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,36 +17,24 @@ impl Rectangle {
     /// A rectangle from its (u = 0, v = 0) corner (m) and its edges (m).
     ///
     /// # Errors
-    /// Edges that are not finite, have no length, or are not perpendicular to 1e-9 of their lengths.
-    pub fn new(corner: DVec3, edge_u: DVec3, edge_v: DVec3) -> Result<Self> {
-        for (what, v) in [("corner", corner), ("edge_u", edge_u), ("edge_v", edge_v)] {
-            check_point(what, v)?;
-        }
-        let (lu, lv) = (edge_u.length(), edge_v.length());
-        if !(lu * lv > 0.0) {
-            return Err(Diagnostic::new(
-                Kind::Geometry,
-                format!("a rectangle of edges {lu} m and {lv} m"),
-                "two edges of positive length",
-            ));
-        }
+    /// A corner or lengths out of range, edges that are not perpendicular to 1e-9 of their lengths or vanish in the rounding of
+    /// the corner.
+    pub fn new(corner: DVec3, edge_u: DVec3, edge_v: DVec3) -> Result<Self, Invalid> {
+        COORDINATE.vector("corner", corner)?;
+        let (lu, lv) = (length("edge_u", edge_u)?, length("edge_v", edge_v)?);
         let cosine = (edge_u / lu).dot(edge_v / lv);
         if !(cosine.abs() <= 1e-9) {
-            return Err(Diagnostic::new(
-                Kind::Geometry,
-                format!("rectangle edges at {:.6} degrees", libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees()),
-                "perpendicular edges",
-            )
-            .hint("use a mesh for a parallelogram"));
+            let angle_deg = libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees();
+            return Err(Invalid::Skew { what: "edge_v", to: "edge_u", angle_deg });
         }
         let corners = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v];
         let flat = |i: usize, j: usize| corners[i] == corners[j];
         if flat(0, 1) || flat(1, 2) || flat(2, 3) || flat(3, 0) {
-            return Err(Diagnostic::new(
-                Kind::Geometry,
-                "a rectangle whose edges vanish in the rounding of its corner",
-                "edges longer than the precision of the corner's coordinates",
-            ));
+            return Err(Invalid::Shape {
+                what: "corner",
+                found: format!("a rectangle at {corner} whose edges vanish in the rounding of its corner"),
+                required: "edges longer than the precision of the corner's coordinates",
+            });
         }
         Ok(Self { corners, edge_u, edge_v })
     }
@@ -87,7 +75,7 @@ impl Rectangle {
     ///
     /// # Errors
     /// See [`Rectangle::new`].
-    pub fn transformed(&self, by: &Transform) -> Result<Self> {
+    pub fn transformed(&self, by: &Transform) -> Result<Self, Invalid> {
         Self::new(by.point(self.corners[0]), by.vector(self.edge_u), by.vector(self.edge_v))
     }
 
@@ -96,4 +84,13 @@ impl Rectangle {
         let [a, b, c, d] = self.corners;
         if face == 0 { [a, b, c] } else { [a, c, d] }
     }
+}
+
+fn length(what: &'static str, edge: DVec3) -> Result<f64, Invalid> {
+    let length = edge.length();
+    if LENGTH.contains(length) {
+        return Ok(length);
+    }
+    let found = format!("{what} of {length} m");
+    Err(Invalid::Shape { what, found, required: "an edge [x, y, z] with a length from 1e-9 to 1e9 m" })
 }

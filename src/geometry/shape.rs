@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Mesh, Paraboloid, Rectangle, Sphere, Transform};
-use crate::error::Result;
+use crate::error::Invalid;
 
 /// A shape in world space. Triangles where there is no formula, exact where there is one.
 #[derive(Debug, Clone)]
@@ -71,12 +71,15 @@ impl Shape {
     ///
     /// # Errors
     /// An exact shape under a non-uniform scale, a rectangle that the scale makes oblique, coordinates out of range.
-    pub fn transformed(&self, by: &Transform) -> Result<Self> {
+    pub fn transformed(self, by: &Transform) -> Result<Self, Invalid> {
+        if *by == Transform::identity() {
+            return Ok(self);
+        }
         Ok(match self {
-            Self::Mesh(m) => Self::Mesh(m.transformed(by)?),
-            Self::Rectangle(r) => Self::Rectangle(r.transformed(by)?),
-            Self::Sphere(s) => Self::Sphere(s.transformed(by)?),
-            Self::Paraboloid(p) => Self::Paraboloid(p.transformed(by)?),
+            Self::Mesh(m) => m.transformed(by)?.into(),
+            Self::Rectangle(r) => r.transformed(by)?.into(),
+            Self::Sphere(s) => s.transformed(by)?.into(),
+            Self::Paraboloid(p) => p.transformed(by)?.into(),
         })
     }
 
@@ -112,4 +115,28 @@ impl Shape {
 fn bounds_of(corners: &[DVec3; 3]) -> (DVec3, DVec3) {
     let [a, b, c] = *corners;
     (a.min(b).min(c), a.max(b).max(c))
+}
+
+impl From<Mesh> for Shape {
+    fn from(shape: Mesh) -> Self {
+        Self::Mesh(shape)
+    }
+}
+
+impl From<Rectangle> for Shape {
+    fn from(shape: Rectangle) -> Self {
+        Self::Rectangle(shape)
+    }
+}
+
+impl From<Sphere> for Shape {
+    fn from(shape: Sphere) -> Self {
+        Self::Sphere(shape)
+    }
+}
+
+impl From<Paraboloid> for Shape {
+    fn from(shape: Paraboloid) -> Self {
+        Self::Paraboloid(shape)
+    }
 }

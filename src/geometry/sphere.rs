@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::ray::Ray;
-use super::transform::{Transform, check_point};
-use crate::error::{Diagnostic, Kind, Result};
+use super::{COORDINATE, LENGTH, Transform};
+use crate::error::Invalid;
 
 /// A sphere; the outward normal points away from the centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,13 +28,10 @@ impl Sphere {
     /// A sphere of positive radius (m).
     ///
     /// # Errors
-    /// A radius that is not positive, or coordinates out of range.
-    pub fn new(centre: DVec3, radius: f64) -> Result<Self> {
-        check_point("sphere", centre.abs() + DVec3::splat(radius.abs()))?;
-        if !(radius > 0.0) {
-            let found = format!("a sphere of radius {radius} m");
-            return Err(Diagnostic::new(Kind::Geometry, found, "a positive radius"));
-        }
+    /// A centre or radius out of range.
+    pub fn new(centre: DVec3, radius: f64) -> Result<Self, Invalid> {
+        COORDINATE.vector("center", centre)?;
+        LENGTH.check("radius", radius)?;
         Ok(Self { centre, radius })
     }
 
@@ -65,8 +62,8 @@ impl Sphere {
     ///
     /// # Errors
     /// A scale that is not uniform.
-    pub fn transformed(&self, by: &Transform) -> Result<Self> {
-        Self::new(by.point(self.centre), self.radius * by.uniform_scale("sphere")?)
+    pub fn transformed(&self, by: &Transform) -> Result<Self, Invalid> {
+        Self::new(by.point(self.centre), self.radius * by.uniform_scale()?)
     }
 
     /// Outward unit normal at a point of the surface.

@@ -2,8 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::MAX_COORDINATE_M;
-use crate::error::{Diagnostic, Kind, Result};
+use super::{ANGLE, COORDINATE};
+use crate::error::Invalid;
+use crate::error::invalid::Interval;
+
+/// Scale factors.
+pub const SCALE: Interval = Interval { low: 1e-9, high: 1e9, words: "a positive factor from 1e-9 to 1e9" };
 
 /// An affine map: scale, then rotation about x, y and z (in this order, about the fixed axes), then translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,22 +32,16 @@ impl Transform {
     /// Positive scale factors, right-handed rotations (degrees) and a translation (m).
     ///
     /// # Errors
-    /// A scale that is not positive (mirroring is not a movement: it would turn the surface inside out), or a number
-    /// that is not finite.
-    pub fn new(scale: DVec3, rotation_deg: DVec3, translation_m: DVec3) -> Result<Self> {
-        check_point("translation", translation_m)?;
-        if !(scale.is_finite() && scale.min_element() > 0.0) {
-            let found = format!("scale {} {} {}", scale.x, scale.y, scale.z);
-            return Err(Diagnostic::new(Kind::Range, found, "three positive scale factors"));
-        }
-        if !rotation_deg.is_finite() {
-            return Err(Diagnostic::new(Kind::Range, "a rotation that is not finite", "angles in degrees"));
-        }
-        let [(sx, cx), (sy, cy), (sz, cz)] = rotation_deg.to_array().map(sin_cos_deg);
+    /// A scale, angle or translation out of range. (A negative scale is no movement: it would turn the surface inside out.)
+    pub fn new(scale: DVec3, rotate_deg: DVec3, translate: DVec3) -> Result<Self, Invalid> {
+        SCALE.vector("scale", scale)?;
+        ANGLE.vector("rotate_deg", rotate_deg)?;
+        COORDINATE.vector("translate", translate)?;
+        let [(sx, cx), (sy, cy), (sz, cz)] = rotate_deg.to_array().map(sin_cos_deg);
         let about_x = DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, cx, sx, 0.0, -sx, cx]);
         let about_y = DMat3::from_cols_array(&[cy, 0.0, -sy, 0.0, 1.0, 0.0, sy, 0.0, cy]);
         let about_z = DMat3::from_cols_array(&[cz, sz, 0.0, -sz, cz, 0.0, 0.0, 0.0, 1.0]);
-        Ok(Self { scale, rotation: about_z * about_y * about_x, translation: translation_m })
+        Ok(Self { scale, rotation: about_z * about_y * about_x, translation: translate })
     }
 
     /// A point, moved (m).
@@ -66,20 +64,20 @@ impl Transform {
         self.rotation * v
     }
 
-    /// The scale factor, if it is the same in all directions.
+    /// The scale factor of an exact shape, which has no formula under several.
     ///
     /// # Errors
-    /// Factors that differ; `what` names the shape that has no formula then.
-    pub fn uniform_scale(&self, what: &str) -> Result<f64> {
+    /// Factors that differ.
+    pub fn uniform_scale(&self) -> Result<f64, Invalid> {
         let s = self.scale;
         if s.x == s.y && s.y == s.z {
             return Ok(s.x);
         }
-        Err(Diagnostic::new(
-            Kind::Geometry,
-            format!("{what} scaled by {} {} {}", s.x, s.y, s.z),
-            format!("the same scale in all directions for a {what}"),
-        ))
+        Err(Invalid::Shape {
+            what: "scale",
+            found: format!("scale = {s}"),
+            required: "one factor for all axes: a sphere or paraboloid keeps its shape",
+        })
     }
 }
 
@@ -97,18 +95,6 @@ fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
     }
     let r = reduced.to_radians();
     (libm::sin(r), libm::cos(r))
-}
-
-/// Refuses coordinates that are not finite or beyond [`MAX_COORDINATE_M`].
-pub(crate) fn check_point(what: &str, p: DVec3) -> Result<()> {
-    if p.is_finite() && p.abs().max_element() <= MAX_COORDINATE_M {
-        return Ok(());
-    }
-    Err(Diagnostic::new(
-        Kind::Range,
-        format!("{what} at {} {} {}", p.x, p.y, p.z),
-        format!("finite coordinates up to {MAX_COORDINATE_M:e} m"),
-    ))
 }
 
 #[cfg(test)]
@@ -138,7 +124,8 @@ mod tests {
     #[test]
     fn mirroring_and_nan_are_refused() {
         for scale in [DVec3::new(1.0, -1.0, 1.0), DVec3::ZERO, DVec3::new(f64::NAN, 1.0, 1.0)] {
-            assert_eq!(Transform::new(scale, DVec3::ZERO, DVec3::ZERO).unwrap_err().kind(), Kind::Range);
+            let refused = Transform::new(scale, DVec3::ZERO, DVec3::ZERO);
+            assert!(matches!(refused, Err(Invalid::Vector { what: "scale", .. })), "{scale}");
         }
     }
 }

@@ -13,6 +13,16 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
     Some(scaled / scaled.length())
 }
 
+/// The unit vector along the part of the unit vector `v` that is orthogonal to the unit vector `axis`; `None` if the angle
+/// between their lines is below 1e-9, where rounding would choose the direction.
+pub fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
+    let sine = v.cross(axis).length();
+    // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.
+    let once = unit(v - axis * v.dot(axis))?;
+    let part = unit(once - axis * once.dot(axis))?;
+    (sine >= 1e-9).then_some(part)
+}
+
 /// Right-handed frame (columns x, y, z) with z along `axis` and x the part of `towards` across it, or `None` where
 /// one of them has no direction or they are parallel.
 pub fn frame_from_axis(axis: DVec3, towards: DVec3) -> Option<DMat3> {

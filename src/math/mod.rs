@@ -1,5 +1,6 @@
 //! Small numerical tools: frames, solvers, elementary functions that are the same on every machine.
 
+pub mod digest;
 pub mod frame;
 pub mod solve;
 pub mod trig;

@@ -1,11 +1,15 @@
-//! A run with a camera: receivers as without one, and the picture.
+//! Pictures: all that a camera needs. The receivers of a run with a camera count what they do without one.
 //!
-//! By the photon map: photons are kept while there is room for them; what is kept is made into two densities, that of
-//! light that no surface scattered before (L S+ D) and that of all other, the camera adds what it sees of both to its sums,
-//! and the photons are dropped: a pass. By splatting: every arrival is joined to the pinhole while it is traced.
+//! Two methods. `map`: photons are kept where they arrive, up to the camera's memory; their density,
+//! estimated where eye paths end, makes pixels; then they are dropped and the next ones are traced (a pass).
+//! `splat`: each arrival is joined to the pinhole while it is traced, without a density.
 //!
-//! What the picture stands for are the ranges of photons that were traced wholly: all of them, or after an interrupt
-//! those until then.
+//! [`trace_picture`] traces and makes the picture, [`picture_of_saved`] makes one of saved photons. After an
+//! interrupt a picture is of the photons traced until then, in whole ranges of indices.
+//!
+//! The files in the order of use: [`photon_map`] keeps and finds photons; [`gather`] estimates luminance from
+//! them, with error and bias; [`camera`] turns pixels into rays and what they find into a film; [`summary`]
+//! says how good it is; [`passes`] leads photons of a run through all of these.
 
 pub mod photon_map;
 pub mod gather;
@@ -17,27 +21,27 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::scene_toml::source::sha256_hex;
-use crate::files::scene_toml::without_camera::without_camera;
-use crate::picture::camera::splat::Splat;
-use crate::picture::camera::{Film, View};
-use crate::picture::photon_map::{Channels, SavedMap};
+use crate::math::digest::sha256_hex;
+use crate::run::{Outcome, Plan, trace_by};
 use crate::scene::Scene;
-use crate::scene::camera::{CameraSpec, Method};
+use crate::scene::camera::{Camera, Method};
 use crate::surface::{Grey, Rgb};
 
-use crate::run::{Outcome, Plan, trace_by};
+use camera::splat::Splat;
+use camera::{Film, View, film};
+use passes::budget::capacity;
 use passes::collector::Collector;
+use photon_map::{Channels, SavedMap};
 pub use summary::{Chosen, PictureSummary};
 
-/// What a camera saw.
+/// A picture of `C` channels: 1 or 3.
 #[derive(Debug)]
 pub struct Picture<const C: usize> {
-    /// Its pixels.
+    /// Its pixels, with standard error and bias, cd/m2.
     pub film: Film<C>,
     /// How it was made, and how good it is.
     pub summary: PictureSummary,
-    /// The photons it was made of, in a fixed order, where they were asked for.
+    /// The photons it was made of, in an order that does not depend on threads, where they were asked for.
     pub photons: Option<SavedMap<C>>,
 }
 
@@ -60,39 +64,36 @@ impl AnyPicture {
     }
 }
 
-/// What a run does beside tracing.
+/// How a run is watched and stopped.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     /// Set from outside to stop.
     pub interrupt: &'a AtomicBool,
-    /// Told numbers of photons as they are done.
+    /// Told the number of photons after each batch.
     pub photons: &'a (dyn Fn(u64) + Sync),
-    /// Told the part of the camera's work that is done in a pass, 0 to 1.
+    /// Told which part of a pass's pixels is done, 0 to 1.
     pub camera: &'a (dyn Fn(f64) + Sync),
 }
 
-/// What photons depend on: the scene but for its camera, the files it names, and the run's settings. Maps of other
-/// photons have another hash.
+/// What photons depend on: the scene but for its camera, the files it names, and the run's settings. Maps of
+/// other photons have another hash.
 pub fn hash_of_photons(scene: &Scene, plan: &Plan) -> String {
     let mut all = format!("{}\n{}\n", env!("CARGO_PKG_VERSION"), settings_of(plan));
-    for (path, sha256) in &scene.identity.files {
-        all += &format!("{sha256} {path}\n");
-    }
-    all += &without_camera(&scene.identity.text);
+    all += &scene.identity.light;
     sha256_hex(all.as_bytes())
 }
 
 /// The settings of a run in words.
 fn settings_of(plan: &Plan) -> String {
-    let algorithm = plan.algorithm;
+    let algorithm = plan.algorithm();
     let way = if algorithm.variant.rejects() { algorithm.rejection.name() } else { algorithm.solver.name() };
     format!(
         "{} {way} {} seed {} {} x {} photons",
         algorithm.variant.name(),
         algorithm.sequence.name(),
-        plan.seed,
-        plan.replicates,
-        plan.photons_per_replicate
+        plan.seed(),
+        plan.replicates(),
+        plan.photons_per_replicate()
     )
 }
 
@@ -100,74 +101,67 @@ fn settings_of(plan: &Plan) -> String {
 ///
 /// # Errors
 /// A scene without.
-fn camera_of(scene: &Scene) -> Result<&CameraSpec> {
+fn camera_of(scene: &Scene) -> Result<&Camera> {
     scene.camera.as_ref().ok_or_else(|| {
         Diagnostic::new(Kind::Missing, "a scene without a camera", "a scene with [camera] for a picture")
     })
 }
 
-/// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene without one passes.
+/// Bytes that the picture of a camera takes while it is made, beside the photons: pixels and their sums.
+pub fn memory_bytes(camera: &Camera, is_coloured: bool) -> u64 {
+    match (camera.method, is_coloured) {
+        (Method::Map, false) => Film::<1>::memory_bytes(camera.pixels),
+        (Method::Map, true) => Film::<3>::memory_bytes(camera.pixels),
+        (Method::Splat, false) => Splat::<1>::memory_bytes(camera.pixels),
+        (Method::Splat, true) => Splat::<3>::memory_bytes(camera.pixels),
+    }
+}
+
+/// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene
+/// without one passes.
 ///
 /// # Errors
-/// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface); splatting through a lens: a splat meets a point.
+/// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface).
 pub fn check(scene: &Scene) -> Result<()> {
-    let Some(spec) = &scene.camera else { return Ok(()) };
-    let splats = spec.method == Method::Splat;
-    if scene.is_coloured() {
-        check_memory::<3>(spec.pixels, splats)?;
-    } else {
-        check_memory::<1>(spec.pixels, splats)?;
-    }
-    View::new(scene, spec, 0)?;
-    if spec.method == Method::Splat && spec.lens_radius_m > 0.0 {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            format!("method \"splat\" and lens_radius = {}", spec.lens_radius_m),
-            "a pinhole (lens_radius = 0) where photons are joined to it",
-        )
-        .hint("method = \"map\" sees through a lens"));
-    }
-    Ok(())
+    let Some(camera) = &scene.camera else { return Ok(()) };
+    film::check_memory(camera.pixels, memory_bytes(camera, scene.is_coloured()))?;
+    View::new(scene, camera, 0).map(|_| ())
 }
 
-fn check_memory<const C: usize>(pixels: [u32; 2], splats: bool) -> Result<()> {
-    if splats { Splat::<C>::check_memory(pixels) } else { Film::<C>::check_memory(pixels) }
-}
-
-/// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is that of
-/// [`crate::run::trace`]. With `keep` the picture's photons are handed out too.
+/// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is
+/// that of [`crate::run::trace`]. With `keep` the picture's photons are handed out too.
 ///
 /// # Errors
-/// Those of [`crate::run::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a surface); `keep` and more
-/// photons than the camera's memory holds.
+/// Those of [`crate::run::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a
+/// surface); `keep` and more photons than the camera's memory holds.
 pub fn trace_picture(
     scene: &Scene,
     plan: &Plan,
     keep: bool,
     watch: Watch<'_>,
 ) -> Result<(Outcome, AnyPicture)> {
-    let spec = camera_of(scene)?;
+    let camera = camera_of(scene)?;
     check(scene)?;
     if scene.is_coloured() {
-        let (outcome, picture) = with_channels::<3, _>(scene, spec, plan, keep, watch, Rgb::WHITE)?;
+        let (outcome, picture) = with_channels::<3, _>(scene, camera, plan, keep, watch, Rgb::WHITE)?;
         Ok((outcome, AnyPicture::Rgb(picture)))
     } else {
-        let (outcome, picture) = with_channels::<1, _>(scene, spec, plan, keep, watch, Grey)?;
+        let (outcome, picture) = with_channels::<1, _>(scene, camera, plan, keep, watch, Grey)?;
         Ok((outcome, AnyPicture::Grey(picture)))
     }
 }
 
 fn with_channels<const C: usize, T: Channels<C>>(
     scene: &Scene,
-    spec: &CameraSpec,
+    camera: &Camera,
     plan: &Plan,
     keep: bool,
     watch: Watch<'_>,
     carried: T,
 ) -> Result<(Outcome, Picture<C>)> {
-    match spec.method {
+    match camera.method {
         Method::Map => {
-            let mut collector = Collector::new(scene, spec, plan, keep, watch)?;
+            let mut collector = Collector::new(scene, camera, plan, keep, watch)?;
             let outcome = trace_by(
                 scene,
                 plan,
@@ -176,19 +170,19 @@ fn with_channels<const C: usize, T: Channels<C>>(
             )?;
             Ok((outcome, collector.finish()?))
         }
-        Method::Splat => passes::splat::trace(scene, spec, plan, watch, carried),
+        Method::Splat => passes::splat::trace(scene, camera, plan, watch, carried),
     }
 }
 
 /// Whether a scene's camera can see photons that another run saved; told before anything is made of them.
 ///
 /// # Errors
-/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have; more than the
-/// camera's memory holds.
+/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not
+/// have; more than the camera's memory holds.
 pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result<()> {
-    let spec = camera_of(scene)?;
+    let camera = camera_of(scene)?;
     check(scene)?;
-    if spec.method == Method::Splat {
+    if camera.method == Method::Splat {
         return Err(Diagnostic::new(
             Kind::Range,
             "method \"splat\" and photons from a file",
@@ -203,7 +197,7 @@ pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result
             "photons of the same scene",
         ));
     }
-    let (number, most) = (saved.photons.len(), passes::collector::capacity::<C>(spec));
+    let (number, most) = (saved.photons.len(), capacity::<C>(camera));
     if number > most {
         let required = format!("at most {most}, for which the camera has memory");
         return Err(Diagnostic::new(Kind::Limit, format!("{number} saved photons"), required)

@@ -33,7 +33,8 @@ pub struct PictureSummary {
     pub photons: u64,
     /// Replicates they belong to.
     pub replicates: u32,
-    /// Photons that were kept on surfaces, all passes together; for a splat the arrivals that reached a pixel.
+    /// Photons that were kept on surfaces, all passes together; for a splat the arrivals that reached a
+    /// pixel.
     pub photons_kept: u64,
     /// Passes that memory made necessary.
     pub passes: u32,

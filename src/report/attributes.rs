@@ -2,10 +2,10 @@
 //! thread count, path or date).
 
 use crate::files::exr::Value;
-use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use crate::run::{Outcome, Plan};
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
+use crate::scene::receiver::{ReceiverEvents, ReceiverSide};
 
 use super::json::why_no_error;
 use super::statistics::ReceiverStatistics;
@@ -71,7 +71,7 @@ pub fn run_attributes(scene: &Scene, plan: &Plan, photons: u64, replicates: u32)
     let mut all = vec![("caustix.emitted_lm".to_string(), Value::F64(scene.emitters.flux_lm()))];
     let mut text = |name: &str, value: &str| all.push((name.to_string(), Value::Text(value.to_string())));
     text("caustix.version", env!("CARGO_PKG_VERSION"));
-    let algorithm = plan.algorithm;
+    let algorithm = plan.algorithm();
     text("caustix.variant", algorithm.variant.name());
     if algorithm.variant.rejects() {
         text("caustix.rejection", algorithm.rejection.name());
@@ -79,7 +79,7 @@ pub fn run_attributes(scene: &Scene, plan: &Plan, photons: u64, replicates: u32)
         text("caustix.solver", algorithm.solver.name());
     }
     text("caustix.sequence", algorithm.sequence.name());
-    text("caustix.seed", &plan.seed.to_string());
+    text("caustix.seed", &plan.seed().to_string());
     text("caustix.photons", &photons.to_string());
     text("caustix.replicates", &replicates.to_string());
     text("caustix.scene.sha256", &scene.identity.sha256);

@@ -197,15 +197,15 @@ impl Report {
         };
         let error = |e: crate::run::Estimate| e.standard_error.unwrap_or(0.0);
         let photons = outcome.photons as f64;
-        let rejects = outcome.plan.algorithm.variant.rejects();
+        let rejects = outcome.plan.algorithm().variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
             scene: SceneReport::new(scene),
-            variant: outcome.plan.algorithm.variant.name(),
-            sequence: outcome.plan.algorithm.sequence.name(),
-            solver: (!rejects).then(|| outcome.plan.algorithm.solver.name()),
-            rejection: rejects.then(|| outcome.plan.algorithm.rejection.name()),
-            seed: outcome.plan.seed,
+            variant: outcome.plan.algorithm().variant.name(),
+            sequence: outcome.plan.algorithm().sequence.name(),
+            solver: (!rejects).then(|| outcome.plan.algorithm().solver.name()),
+            rejection: rejects.then(|| outcome.plan.algorithm().rejection.name()),
+            seed: outcome.plan.seed(),
             photons: outcome.photons,
             photons_planned: outcome.plan.photons(),
             replicates: outcome.replicates,
@@ -286,7 +286,7 @@ impl Report {
 
 /// Why a run has no standard error, where it has none.
 pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
-    match (outcome.replicates, outcome.plan.algorithm.sequence.is_randomised()) {
+    match (outcome.replicates, outcome.plan.algorithm().sequence.is_randomised()) {
         (2.., _) => None,
         (_, false) => {
             Some("this sequence has no seed: there is one replicate, and one set of points has no spread")

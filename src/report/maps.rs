@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
-use crate::files::exr::{Channel, Data, write_maps};
+use crate::files::exr::{Channel, Data, Light, write_maps};
 use crate::plot::false_colour::{FalseColour, Quantity};
 use crate::plot::scale::Scale;
 use crate::run::Outcome;
@@ -84,7 +84,13 @@ fn write_exr(
         Channel { name: "standard_error", data: Data::F32(&error) },
         Channel { name: "hits", data: Data::U32(&hits) },
     ];
-    write_maps(path, width, height, &channels, &attributes(scene, outcome, receiver, statistics))
+    write_maps(
+        path,
+        [width, height],
+        &channels,
+        &attributes(scene, outcome, receiver, statistics),
+        Light::Other,
+    )
 }
 
 fn picture<'a>(

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::exr::{Channel, Data, Value, write_luminance};
+use crate::files::exr::{Channel, Data, Light, Value, write_maps};
 use crate::files::png::write_rgb8;
 use crate::picture::camera::Film;
 use crate::plot::false_colour::{FalseColour, Quantity};
@@ -67,7 +67,7 @@ fn write_exr<const C: usize>(path: &Path, film: &Film<C>, attributes: &[(String,
         names.iter().zip(&colours).map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
     channels.push(Channel { name: "standard_error", data: Data::F32(&error) });
     channels.push(Channel { name: "bias", data: Data::F32(&bias) });
-    write_luminance(path, film.pixels[0] as usize, film.pixels[1] as usize, &channels, attributes)
+    write_maps(path, film.pixels.map(|n| n as usize), &channels, attributes, Light::Luminance)
 }
 
 fn write_false_colour<const C: usize>(path: &Path, name: &str, film: &Film<C>, tone: &Tone) -> Result<()> {
@@ -157,7 +157,7 @@ pub fn camera_attributes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::exr::{OwnedData, read_maps};
+    use crate::files::exr::maps::{Attribute, Maps, Samples, read_maps};
     use ::image::ImageReader;
     use glam::DVec3;
 
@@ -174,10 +174,10 @@ mod tests {
         }
     }
 
-    fn floats(maps: &crate::files::exr::Maps, name: &str) -> Vec<f32> {
+    fn floats(maps: &Maps, name: &str) -> Vec<f32> {
         match &maps.channels.iter().find(|(n, _)| n == name).unwrap().1 {
-            OwnedData::F32(values) => values.clone(),
-            OwnedData::U32(_) => panic!("{name}"),
+            Samples::F32(values) => values.clone(),
+            Samples::U32(_) => panic!("{name}"),
         }
     }
 
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(floats(&maps, "B"), [0.0, 0.5, 1.0, 1.5, 2.0, 2.5]);
         assert_eq!(floats(&maps, "bias")[5], -2.5);
         assert!(floats(&maps, "standard_error")[0].is_nan());
-        assert_eq!(maps.attributes["caustix.unit"], Value::Text("cd/m2".into()));
+        assert_eq!(maps.attributes["caustix.unit"], Attribute::Text("cd/m2".into()));
         let meta = ::exr::meta::MetaData::read_from_file(&path, true).unwrap();
         let header = &meta.headers[0];
         assert_eq!(header.own_attributes.white_luminance, Some(1.0));
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(files, ["camera.exr", "camera.png", "camera_luminance.png"]);
         let maps = read_maps(directory.path().join("camera.exr")).unwrap();
         assert_eq!(floats(&maps, "Y"), [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-        assert_eq!(maps.attributes["caustix.png.white_cd_m2"], Value::F64(5.0));
+        assert_eq!(maps.attributes["caustix.png.white_cd_m2"], Attribute::Number(5.0));
         let png = ImageReader::open(directory.path().join("camera.png")).unwrap().decode().unwrap().to_rgb8();
         assert_eq!(png.dimensions(), (3, 2));
         // 0, 0.2, ... 1 of white by IEC 61966-2-1.

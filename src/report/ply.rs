@@ -35,7 +35,7 @@ pub fn write_ply(
     let comments = [
         format!("caustix {}", env!("CARGO_PKG_VERSION")),
         format!("receiver {} on surface {}", receiver.name, surface.name),
-        format!("{} photons, seed {}", outcome.photons, outcome.plan.seed),
+        format!("{} photons, seed {}", outcome.photons, outcome.plan.seed()),
         format!("scene sha256 {}", scene.identity.sha256),
         "quality = illuminance_lx; lengths in metres".to_string(),
     ];

@@ -56,7 +56,7 @@ pub struct SavedTime {
 impl SavedReport {
     /// The report of a picture of the photons in this file, which a run by this plan saved.
     pub fn new(scene: &Scene, plan: &Plan, map: &Path, camera: CameraReport, total_s: f64) -> Self {
-        let algorithm = plan.algorithm;
+        let algorithm = plan.algorithm();
         let rejects = algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
@@ -65,9 +65,9 @@ impl SavedReport {
             sequence: algorithm.sequence.name(),
             solver: (!rejects).then(|| algorithm.solver.name()),
             rejection: rejects.then(|| algorithm.rejection.name()),
-            seed: plan.seed,
+            seed: plan.seed(),
             photons: camera.photons,
-            replicates: plan.replicates,
+            replicates: plan.replicates(),
             map: map.display().to_string(),
             time: SavedTime { total_s },
             camera,

@@ -50,7 +50,7 @@ impl ReceiverStatistics {
         let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
         let lit = mean_lx > 0.0;
         Self {
-            hits: outcome.cells[index].sum.clone(),
+            hits: outcome.cells()[index].sum.clone(),
             flux_lm,
             area_m2,
             min_lx,

@@ -38,9 +38,9 @@ fn write_all(
         grouped(outcome.photons),
         outcome.replicates,
         grouped(outcome.photons / u64::from(outcome.replicates.max(1))),
-        plan.algorithm.variant.name(),
-        plan.algorithm.sequence.name(),
-        plan.seed
+        plan.algorithm().variant.name(),
+        plan.algorithm().sequence.name(),
+        plan.seed()
     )?;
     if outcome.stopped_by == StoppedBy::Interrupt {
         writeln!(

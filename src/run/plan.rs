@@ -5,9 +5,9 @@ use crate::error::{Diagnostic, Kind, Result};
 use super::algorithm::Algorithm;
 
 /// Photons of a run that names no number.
-pub const DEFAULT_PHOTONS: u64 = 1 << 22;
+const DEFAULT_PHOTONS: u64 = 1 << 22;
 /// Replicates of a run that names no number.
-pub const DEFAULT_REPLICATES: u32 = 8;
+const DEFAULT_REPLICATES: u32 = 8;
 /// Most photons of a run: 2^48, so that counts and their products have room.
 pub const MAX_PHOTONS: u64 = 1 << 48;
 /// Most replicates.
@@ -16,9 +16,9 @@ pub const MAX_REPLICATES: u32 = 1 << 16;
 /// What a run is asked to do.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings {
-    /// Photons in all; `None`: [`DEFAULT_PHOTONS`], rounded up to R 2^m.
+    /// Photons in all; `None`: 2^22, rounded up to R 2^m.
     pub photons: Option<u64>,
-    /// Independent randomisations R; `None`: [`DEFAULT_REPLICATES`] (1 for a sequence without a seed).
+    /// Independent randomisations R; `None`: 8 (1 for a sequence without a seed).
     pub replicates: Option<u32>,
     /// Seed of the randomisation.
     pub seed: u64,
@@ -35,22 +35,18 @@ impl Default for Settings {
 /// What a run does: settings made definite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan {
-    /// Photons of one replicate, n.
-    pub photons_per_replicate: u64,
-    /// Replicates, R.
-    pub replicates: u32,
-    /// Seed of the randomisation.
-    pub seed: u64,
-    /// Algorithm variant, with its sequence.
-    pub algorithm: Algorithm,
+    photons_per_replicate: u64,
+    replicates: u32,
+    seed: u64,
+    algorithm: Algorithm,
 }
 
 impl Plan {
     /// The plan for these settings: n = 2^m where no number of photons is asked for, else N / R rounded up.
     ///
     /// # Errors
-    /// No photons, no replicates, more than [`MAX_PHOTONS`] or [`MAX_REPLICATES`], and several replicates of a sequence
-    /// that has no seed.
+    /// No photons, no replicates, more than [`MAX_PHOTONS`] or [`MAX_REPLICATES`], and several replicates of
+    /// a sequence that has no seed.
     pub fn new(settings: &Settings) -> Result<Self> {
         let Settings { photons, replicates, seed, algorithm } = *settings;
         let sequence = algorithm.sequence;
@@ -77,6 +73,26 @@ impl Plan {
     /// Photons in all.
     pub fn photons(&self) -> u64 {
         self.photons_per_replicate * u64::from(self.replicates)
+    }
+
+    /// Photons of one replicate, n.
+    pub fn photons_per_replicate(&self) -> u64 {
+        self.photons_per_replicate
+    }
+
+    /// Replicates, R.
+    pub fn replicates(&self) -> u32 {
+        self.replicates
+    }
+
+    /// Seed of the randomisation.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Algorithm variant, with its sequence.
+    pub fn algorithm(&self) -> Algorithm {
+        self.algorithm
     }
 }
 

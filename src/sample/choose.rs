@@ -27,15 +27,6 @@ impl Share {
     /// All fractions.
     pub const ALL: Self = Self { low: 0, width: 0 };
 
-    /// The fraction of the event that leaves this remainder, to the resolution of its width: the inverse of
-    /// [`Reusable::take`].
-    pub fn invert(self, remainder: u64) -> u64 {
-        match self.width {
-            0 => remainder,
-            width => self.low + ((u128::from(remainder) * u128::from(width)) >> 64) as u64,
-        }
-    }
-
     /// The part of all fractions that belongs to the event: its probability.
     #[inline]
     pub fn probability(self) -> f64 {
@@ -66,15 +57,6 @@ impl Share {
         let (whole, width) = (self.width as f64, part.width as f64);
         let inside = (at - part.low) as f64 + product as u64 as f64 / TWO_TO_64;
         (found, width / whole, below_one(inside / width))
-    }
-
-    /// The fraction of this event at which `part` of it leaves `rest`: the inverse of [`Self::choose_part`], to 53 bits.
-    pub fn invert_part(self, part: Self, rest: f64) -> f64 {
-        if part.width == 0 {
-            return rest;
-        }
-        let whole = if self.width == 0 { TWO_TO_64 } else { self.width as f64 };
-        (((part.low - self.low) as f64 + rest * part.width as f64) / whole).min(ALMOST_ONE)
     }
 }
 
@@ -237,8 +219,6 @@ mod tests {
                 let behind = (u128::from(v) * whole - (cuts[k] << 64)) / width;
                 let exact = (behind >> 4) as f64 / (1u64 << 60) as f64;
                 assert!((rest - exact).abs() < 1e-15 && rest < 1.0, "{v} in {k}: {rest} {exact}");
-                let back = event.invert_part(part, rest);
-                assert!((back - to_unit_f64(v)).abs() < 1e-15, "{v} in {k}");
             }
         }
         assert!(Share { low: 0, width: u64::MAX }.rest(u64::MAX - 1) < 1.0);

@@ -9,7 +9,7 @@
 //! S = sin theta1, C = cos theta1. Every term is of the order of the result, so nothing cancels in narrow cells or at a
 //! pole, where eq. (8) in absolute angles loses all digits.
 
-use super::cell::Row;
+use super::angles::Row;
 use crate::math::solve::{
     Expansion, Root, Solver, bisection, bracketed_newton, bracketed_secant, bracketed_series, ridder,
 };
@@ -27,7 +27,8 @@ pub struct Polar {
     pub sin: f64,
     /// cos theta.
     pub cos: f64,
-    /// Evaluations of F that the solver used.
+    /// Evaluations of F that the solver used: what tests and benches compare solvers by.
+    #[cfg_attr(not(feature = "internals"), expect(dead_code))]
     pub evaluations: u32,
 }
 
@@ -164,6 +165,11 @@ impl<'r> Marginal<'r> {
             (u * w, w)
         }
     }
+}
+
+/// F(dt) of the edge sums (1, 0) and (0, 1): that of any others is linear in them.
+pub(super) fn unit_masses(row: &Row) -> [f64; 2] {
+    [(1.0, 0.0), (0.0, 1.0)].map(|edges| Marginal::new(row, edges, 1.0).mass_to(row.width).0)
 }
 
 /// sin t and 1 - cos t of a step beyond the last evaluation: max g is at least 1/2 where F(dt) = 1, so the tolerance

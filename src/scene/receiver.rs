@@ -1,23 +1,117 @@
 //! Where arriving flux is counted.
 
+use crate::error::invalid::Invalid;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, Shape, SurfaceId};
 
-use crate::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
+/// The side of its surface on which a receiver counts arriving flux.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ReceiverSide {
+    /// The side the outward normal points to.
+    #[default]
+    Front,
+    /// The other side.
+    Back,
+    /// Both, in one sum.
+    Both,
+}
 
-/// A receiver as it is asked for.
+/// Which arrivals a receiver counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ReceiverEvents {
+    /// Every arrival.
+    #[default]
+    All,
+    /// Straight from the emitter: no event before.
+    Direct,
+    /// After at least one event.
+    Indirect,
+}
+
+/// Most cells of one receiver, and of all with cells of their own together: 2^26, two gigabytes of sums.
+pub const MOST_CELLS: u64 = 1 << 26;
+
+/// What cells must be, in words.
+pub const CELLS_REQUIRED: &str = "[cells along u, cells along v], each at least 1, at most 2^26 in all";
+
+/// Longest name in bytes: file systems take 255, of which endings and temporary names need some.
+const LONGEST_NAME_BYTES: usize = 200;
+
+/// Base names of files that a run writes besides the receivers', and names Windows does not let a file have.
+const RESERVED: [&str; 6] = ["camera", "report", "con", "prn", "aux", "nul"];
+
+/// A receiver as it is asked for: by default all that arrives on the front of its surface.
 #[derive(Debug, Clone)]
 pub struct ReceiverSpec {
+    name: String,
+    surface: String,
+    cells: Option<[u32; 2]>,
+    side: ReceiverSide,
+    events: ReceiverEvents,
+}
+
+impl ReceiverSpec {
+    /// A receiver of this name, which becomes that of its files, on the surface of that name.
+    ///
+    /// # Errors
+    /// A name that cannot be a file's on every common system.
+    pub fn new(name: impl Into<String>, surface: impl Into<String>) -> Result<Self, Invalid> {
+        let name = name.into();
+        if !is_file_name(&name) {
+            let shown: String = name.chars().take(40).collect();
+            return Err(Invalid::Content {
+                what: "name",
+                found: format!("the receiver name `{}`", shown.escape_debug()),
+                required: "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space, \
+                           at most 200 bytes of UTF-8 (it becomes a file name), and none of the words \
+                           camera, report, con, prn, aux, nul"
+                    .into(),
+            });
+        }
+        let (side, events) = (ReceiverSide::default(), ReceiverEvents::default());
+        Ok(Self { name, surface: surface.into(), cells: None, side, events })
+    }
+
+    /// The same with so many cells along u and v, [`DEFAULT_CELLS`] without; not on a mesh, which has one value a face.
+    ///
+    /// # Errors
+    /// No cells, or more than [`MOST_CELLS`].
+    pub fn with_cells(mut self, cells: [u32; 2]) -> Result<Self, Invalid> {
+        let number = cells.into_iter().map(u64::from).product();
+        if !(1..=MOST_CELLS).contains(&number) {
+            return Err(Invalid::Count { what: "cells", value: number, required: CELLS_REQUIRED });
+        }
+        self.cells = Some(cells);
+        Ok(self)
+    }
+
+    /// The same for arrivals on another side.
+    #[must_use]
+    pub fn on_side(self, side: ReceiverSide) -> Self {
+        Self { side, ..self }
+    }
+
+    /// The same for arrivals of some histories alone.
+    #[must_use]
+    pub fn of_events(self, events: ReceiverEvents) -> Self {
+        Self { events, ..self }
+    }
+
     /// Name of the output.
-    pub name: String,
-    /// Name of the surface it lies on.
-    pub surface: String,
-    /// Cells along u and v; `None`: one value a face.
-    pub cells: Option<[u32; 2]>,
-    /// Sides on which arrivals count.
-    pub side: ReceiverSide,
-    /// Histories that count.
-    pub events: ReceiverEvents,
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// Whether this can be the base name of a file on every common system, and only that.
+fn is_file_name(name: &str) -> bool {
+    let allowed = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '_' | '-' | '.');
+    let edge = |c: char| matches!(c, ' ' | '.');
+    (1..=LONGEST_NAME_BYTES).contains(&name.len())
+        && name.chars().all(allowed)
+        && !name.starts_with(edge)
+        && !name.ends_with(edge)
+        && !RESERVED.contains(&name.to_lowercase().as_str())
 }
 
 /// How a receiver's surface is divided.
@@ -78,7 +172,7 @@ impl Receiver {
     /// A receiver on a surface of this geometry.
     ///
     /// # Errors
-    /// An unknown surface, a grid of cells on a mesh or none at all, no area.
+    /// An unknown surface, a grid of cells on a mesh, no area.
     pub fn new(spec: &ReceiverSpec, geometry: &Geometry) -> Result<Self> {
         let surface = geometry.surface_named(&spec.surface).ok_or_else(|| {
             Diagnostic::new(
@@ -107,7 +201,7 @@ impl Receiver {
             Cells::Grid { .. } => vec![shape.area() / cells.len() as f64],
             Cells::Faces { .. } => shape.face_areas(),
         };
-        if cells.is_empty() || !areas_m2.iter().all(|a| *a > 0.0 && a.is_finite()) {
+        if !areas_m2.iter().all(|a| *a > 0.0 && a.is_finite()) {
             return Err(Diagnostic::new(
                 Kind::Range,
                 format!(
@@ -116,7 +210,7 @@ impl Receiver {
                     cells.len(),
                     shape.area()
                 ),
-                "at least one cell, and a positive area for each",
+                "a positive area for each cell",
             ));
         }
         let size_m = match shape {

@@ -4,9 +4,9 @@
 //! has photons with weights; only one with a camera keeps photons, and only where the camera makes a map of them. Nothing that a
 //! scene can name needs wavelengths, so there are none.
 
-use crate::emitter::Emitter;
+use crate::emitter::Emits;
 use crate::geometry::Shape;
-use crate::surface::Material;
+use crate::surface::{Kind, Material, REQUIREMENTS};
 
 use super::Scene;
 use super::camera::Method;
@@ -16,34 +16,29 @@ use super::receiver::Cells;
 pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let emitters = scene.emitters.as_slice();
     let surfaces = scene.geometry.surfaces();
-    let emitter = |test: fn(&Emitter) -> bool| emitters.iter().any(test);
-    let material = |test: fn(&Material) -> bool| scene.materials().iter().any(test);
     let shape = |test: fn(&Shape) -> bool| surfaces.iter().any(|s| test(&s.shape));
     let cells = |test: fn(&Cells) -> bool| scene.receivers.iter().any(|r| test(&r.cells));
-    let specular = material(|b| matches!(b, Material::Dielectric(_) | Material::Mirror { .. }));
-    [
-        ("photometric table", emitter(|e| matches!(e, Emitter::Photometric(_)))),
-        ("isotropic emission", emitter(|e| matches!(e, Emitter::Isotropic(_)))),
-        ("collimated emission", emitter(|e| matches!(e, Emitter::Collimated(_)))),
-        ("panel emission", emitter(|e| matches!(e, Emitter::Panel(_)))),
+    let materials = scene.materials();
+    let specular = materials.iter().any(|m| m.kind() == Kind::Specular);
+    let words: Vec<&str> = materials.iter().flat_map(Material::requires).copied().collect();
+    let mut emission: Vec<(u8, &str)> = emitters.iter().map(|e| e.kind().requires).collect();
+    emission.sort_unstable();
+    emission.dedup();
+    let of_emitters_and_shapes = [
         ("choice of emitter", emitters.len() > 1),
         ("triangles", shape(|s| matches!(s, Shape::Mesh(_) | Shape::Rectangle(_)))),
         ("exact shapes", shape(|s| matches!(s, Shape::Sphere(_) | Shape::Paraboloid(_)))),
         ("smooth normals", specular && shape(|s| matches!(s, Shape::Mesh(m) if m.is_smooth()))),
-        ("refraction", material(|b| matches!(b, Material::Dielectric(_)))),
-        ("mirror reflection", material(|b| matches!(b, Material::Mirror { .. }))),
-        (
-            "diffuse scattering",
-            material(|b| matches!(b, Material::Lambertian { reflectance } if reflectance.luminous() > 0.0)),
-        ),
-        ("tabulated scattering", material(|b| matches!(b, Material::Tabulated(_)))),
+    ];
+    let of_materials = REQUIREMENTS.map(|word| (word, words.contains(&word)));
+    let of_the_rest = [
         ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
         ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),
         ("camera", scene.camera.is_some()),
         ("stored photons", scene.camera.as_ref().is_some_and(|c| c.method == Method::Map)),
-    ]
-    .into_iter()
-    .filter_map(|(word, required)| required.then_some(word))
-    .collect()
+    ];
+    let others = of_emitters_and_shapes.into_iter().chain(of_materials).chain(of_the_rest);
+    let others = others.filter_map(|(word, required)| required.then_some(word));
+    emission.into_iter().map(|(_, word)| word).chain(others).collect()
 }

@@ -5,16 +5,46 @@
 
 use glam::DVec3;
 
+use crate::error::Invalid;
+use crate::error::invalid::number;
 use crate::sample::coordinates::Chooser;
-use crate::surface::{Event, Incidence, keep_side, working_normal};
+use crate::surface::incidence::keep_side;
+use crate::surface::{Event, Incidence, Kind, Model, Throughput, Way, Ways};
 
 /// The two refractive indices of an interface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dielectric {
-    /// Index on the side the outward normal points to.
-    pub ior_outside: f64,
-    /// Index behind the outward normal.
-    pub ior: f64,
+    ior: f64,
+    ior_outside: f64,
+}
+
+/// Least and greatest refractive index.
+pub const RANGE: [f64; 2] = [1e-3, 1e3];
+
+/// [`RANGE`] in words.
+pub const REQUIRED: &str = "a refractive index from 0.001 to 1000";
+
+impl Dielectric {
+    /// An interface: `ior` behind the outward normal, `ior_outside` before it.
+    ///
+    /// # Errors
+    /// Indices out of [`RANGE`].
+    pub fn new(ior: f64, ior_outside: f64) -> Result<Self, Invalid> {
+        Ok(Self {
+            ior: number("ior", ior, RANGE, REQUIRED)?,
+            ior_outside: number("ior_outside", ior_outside, RANGE, REQUIRED)?,
+        })
+    }
+
+    /// Refractive index behind the outward normal.
+    pub fn ior(&self) -> f64 {
+        self.ior
+    }
+
+    /// Refractive index before the outward normal.
+    pub fn ior_outside(&self) -> f64 {
+        self.ior_outside
+    }
 }
 
 /// Unpolarised Fresnel reflectance and the cosine of the refracted ray, for relative index `eta` = transmitted over
@@ -34,11 +64,11 @@ pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
     (0.5 * (s * s + p * p), cos_t)
 }
 
-/// The two ways on from an interface, and how much goes which.
+/// What happens to light at an interface.
 #[derive(Debug, Clone, Copy)]
-pub struct Ways {
+struct Split {
     /// Part of the flux that is mirrored; the rest is refracted. 1 in total reflection, where there is no refracted way.
-    pub reflectance: f64,
+    reflectance: f64,
     direction: DVec3,
     facet: DVec3,
     normal: DVec3,
@@ -48,16 +78,16 @@ pub struct Ways {
     behind: bool,
 }
 
-impl Ways {
+impl Split {
     /// The mirrored direction, unit, and whether a smooth normal made an exception necessary ([`Event::Leaves`]).
     #[inline]
-    pub fn mirrored(&self) -> (DVec3, bool) {
+    fn mirrored(&self) -> (DVec3, bool) {
         self.kept(self.direction + 2.0 * self.cos_i * self.normal, self.facet)
     }
 
-    /// The same of the refracted direction; without meaning in total reflection.
+    /// Likewise the refracted direction; without meaning in total reflection.
     #[inline]
-    pub fn refracted(&self) -> (DVec3, bool) {
+    fn refracted(&self) -> (DVec3, bool) {
         self.kept(refract(self.direction, self.normal, self.eta, self.cos_i, self.cos_t), -self.facet)
     }
 
@@ -69,24 +99,64 @@ impl Ways {
 }
 
 impl Dielectric {
-    /// Both ways of what arrives.
     #[inline]
-    pub fn ways(&self, at: &Incidence) -> Ways {
+    fn split(&self, at: &Incidence) -> Split {
         let eta = if at.front { self.ior / self.ior_outside } else { self.ior_outside / self.ior };
-        let (normal, behind) = working_normal(at);
+        let (normal, behind) = at.working_normal();
         // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
         let cos_i = (-at.direction.dot(normal)).clamp(0.0, 1.0);
         let (reflectance, cos_t) = fresnel(eta, cos_i);
-        Ways { reflectance, direction: at.direction, facet: at.facet, normal, eta, cos_i, cos_t, behind }
+        Split { reflectance, direction: at.direction, facet: at.facet, normal, eta, cos_i, cos_t, behind }
+    }
+
+    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye path that goes
+    /// on through the interface from the medium of index n_i, on the side `front`, sees that part of the luminance in n_t.
+    /// (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2.)
+    #[inline]
+    fn luminance_factor(&self, front: bool) -> f64 {
+        let ratio = self.ior_outside / self.ior;
+        if front { ratio * ratio } else { 1.0 / (ratio * ratio) }
+    }
+}
+
+impl Model for Dielectric {
+    #[inline]
+    fn kind(&self) -> Kind {
+        Kind::Specular
+    }
+
+    fn requires(&self) -> &'static [&'static str] {
+        &["refraction"]
+    }
+
+    fn is_coloured(&self) -> bool {
+        false
+    }
+
+    fn is_transparent(&self) -> bool {
+        true
     }
 
     /// Reflects with the Fresnel reflectance, else refracts.
     #[inline]
-    pub fn scatter<C: Chooser>(&self, at: &Incidence, chooser: &mut C) -> Event {
-        let ways = self.ways(at);
-        let through = !chooser.happens(ways.reflectance);
-        let (direction, corrected) = if through { ways.refracted() } else { ways.mirrored() };
+    fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, _: &mut T) -> Event {
+        let split = self.split(at);
+        let through = !chooser.happens(split.reflectance);
+        let (direction, corrected) = if through { split.refracted() } else { split.mirrored() };
         Event::Leaves { direction, through, corrected }
+    }
+
+    #[inline]
+    fn specular(&self, at: &Incidence) -> Ways {
+        let split = self.split(at);
+        let r = split.reflectance;
+        let way =
+            |(direction, _), part, luminance_factor| Way { direction, part: [part; 3], luminance_factor };
+        Ways {
+            mirrored: (r > 0.0).then(|| way(split.mirrored(), r, 1.0)),
+            through: (r < 1.0).then(|| way(split.refracted(), 1.0 - r, self.luminance_factor(at.front))),
+            lossless: true,
+        }
     }
 }
 
@@ -98,7 +168,8 @@ fn refract(direction: DVec3, normal: DVec3, eta: f64, cos_i: f64, cos_t: f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::script::Script;
+    use crate::surface::Grey;
+    use crate::surface::tests::Script;
 
     fn at(angle: f64, front: bool) -> Incidence {
         let direction = DVec3::new(angle.sin(), 0.0, -angle.cos());
@@ -122,10 +193,10 @@ mod tests {
     #[test]
     fn total_reflection_begins_at_the_critical_angle() {
         let critical = (1.0f64 / 1.5).asin();
-        let glass = Dielectric { ior: 1.5, ior_outside: 1.0 };
+        let glass = Dielectric::new(1.5, 1.0).unwrap();
         for (angle, total) in [(critical - 1e-9, false), (critical + 1e-9, true)] {
-            let mut script = Script { events: vec![false], ..Script::default() };
-            match glass.scatter(&at(angle, false), &mut script) {
+            let mut script = Script::new([false], []);
+            match glass.scatter(&at(angle, false), &mut script, &mut Grey) {
                 Event::Leaves { direction, through, .. } => {
                     assert_eq!(through, !total);
                     assert_eq!(script.asked.is_empty(), total, "total reflection draws nothing");
@@ -141,10 +212,10 @@ mod tests {
 
     #[test]
     fn snell_holds_on_both_sides() {
-        let glass = Dielectric { ior: 1.5, ior_outside: 1.2 };
+        let glass = Dielectric::new(1.5, 1.2).unwrap();
         for (front, ratio) in [(true, 1.2 / 1.5), (false, 1.5 / 1.2)] {
-            let mut script = Script { events: vec![false], ..Script::default() };
-            match glass.scatter(&at(0.5, front), &mut script) {
+            let mut script = Script::new([false], []);
+            match glass.scatter(&at(0.5, front), &mut script, &mut Grey) {
                 Event::Leaves { direction, through: true, corrected: false } => {
                     assert!((direction.x - ratio * 0.5f64.sin()).abs() < 1e-15 && direction.z < 0.0);
                 }
@@ -155,15 +226,15 @@ mod tests {
 
     #[test]
     fn a_tilted_smooth_normal_never_sends_a_photon_to_the_wrong_side() {
-        let glass = Dielectric { ior: 1.5, ior_outside: 1.0 };
+        let glass = Dielectric::new(1.5, 1.0).unwrap();
         let mut corrected = 0;
         for i in 0..1000 {
             let tilt = 0.4 * f64::from(i % 7 - 3) / 3.0;
             let mut incidence = at(1.57 * f64::from(i) / 1000.0, i % 2 == 0);
             incidence.smooth = DVec3::new(tilt.sin(), 0.0, tilt.cos());
             for reflect in [true, false] {
-                let mut script = Script { events: vec![reflect], ..Script::default() };
-                match glass.scatter(&incidence, &mut script) {
+                let mut script = Script::new([reflect], []);
+                match glass.scatter(&incidence, &mut script, &mut Grey) {
                     Event::Leaves { direction, through, corrected: c } => {
                         assert!(direction.z * if through { -1.0 } else { 1.0 } >= 0.0);
                         assert!((direction.length() - 1.0).abs() < 1e-14);
@@ -174,5 +245,39 @@ mod tests {
             }
         }
         assert!(corrected > 10, "the family must contain exceptions");
+    }
+
+    #[test]
+    fn an_eye_path_goes_the_ways_of_photons_with_the_parts_that_they_go() {
+        let glass = Dielectric::new(1.5, 1.2).unwrap();
+        for (front, factor) in [(true, 0.64), (false, 1.0 / 0.64)] {
+            let mut incidence = at(0.5, front);
+            incidence.smooth = DVec3::new(0.1, 0.0, 1.0).normalize();
+            let ways = glass.specular(&incidence);
+            assert!(ways.lossless);
+            for (reflect, way) in [(true, ways.mirrored.unwrap()), (false, ways.through.unwrap())] {
+                let mut script = Script::new([reflect], []);
+                match glass.scatter(&incidence, &mut script, &mut Grey) {
+                    Event::Leaves { direction, .. } => assert_eq!(direction, way.direction),
+                    other => panic!("{other:?}"),
+                }
+                let chance = if reflect { script.asked[0] } else { 1.0 - script.asked[0] };
+                assert_eq!(way.part, [chance; 3]);
+                let factor = if reflect { 1.0 } else { factor };
+                assert!((way.luminance_factor / factor - 1.0).abs() < 1e-15);
+            }
+        }
+        let total = glass.specular(&at(1.2, false));
+        assert!(total.through.is_none() && total.mirrored.unwrap().part == [1.0; 3]);
+        let matched = Dielectric::new(1.5, 1.5).unwrap().specular(&at(1.2, false));
+        assert!(matched.mirrored.is_none() && matched.through.unwrap().part == [1.0; 3]);
+    }
+
+    #[test]
+    fn what_is_no_index_is_refused() {
+        for ior in [f64::NAN, f64::INFINITY, 0.0, -1.5, 1e-4, 1e4, 1e300] {
+            assert_eq!(Dielectric::new(ior, 1.0).unwrap_err().what(), "ior");
+            assert_eq!(Dielectric::new(1.5, ior).unwrap_err().what(), "ior_outside");
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! What an eye path carries: the part of the luminance ahead of it that reaches the eye.
 //!
-//! A mirror multiplies it by its reflectance, glass by the part that goes the way which is followed and by the square of the
-//! indices ([`Dielectric::luminance_factor`]). Roulette ends paths that have become faint or long.
+//! A way multiplies it by its part of the flux and by its [`crate::surface::Way::luminance_factor`]. Roulette ends paths that have
+//! become faint or long.
 
 use crate::sample::coordinates::Chooser;
-use crate::surface::Dielectric;
+use crate::surface::Way;
 use crate::surface::reflectance::luminance;
 
 /// Weights of red, green and blue.
@@ -29,102 +29,85 @@ impl EyeWeight {
         self.weight
     }
 
-    /// Multiplies all channels.
+    /// Follows a way that was chosen with this chance.
     #[inline]
-    pub fn scale(&mut self, factor: f64) {
-        self.weight = self.weight.map(|w| w * factor);
+    pub fn follow(&mut self, way: &Way, chance: f64) {
+        for (w, part) in self.weight.iter_mut().zip(way.part) {
+            *w = *w * (part / chance) * way.luminance_factor;
+        }
     }
 
-    /// Multiplies by channel; whether the path goes on. Of paths whose weight has become small, few go on with more: the mean
-    /// stays.
+    /// Russian roulette: paths of small weight end with probability 1 - q, survivors are divided by q. Whether the path
+    /// goes on.
     #[inline]
-    pub fn attenuate<C: Chooser>(&mut self, factor: [f64; 3], chooser: &mut C) -> bool {
-        for (w, f) in self.weight.iter_mut().zip(factor) {
-            *w *= f;
-        }
+    pub fn roulette<C: Chooser>(&mut self, chooser: &mut C) -> bool {
         let y = luminance(self.weight);
-        if y >= ROULETTE_BELOW {
-            return true;
-        }
-        let q = y / ROULETTE_BELOW;
-        if !chooser.happens(q) {
-            return false;
-        }
-        self.scale(1.0 / q);
-        true
+        y >= ROULETTE_BELOW || self.survives(y / ROULETTE_BELOW, chooser)
     }
 
-    /// After so many events, whether the path goes on. Total reflection keeps light in glass without loss, often for good; of long
-    /// paths therefore fewer and fewer go on, with more: the mean stays. A path of [`FREE_EVENTS`] becomes one of n events with the
-    /// probability (FREE_EVENTS / n)^2, so that its length has a mean of 2 FREE_EVENTS however it is caught; its weight grows no
-    /// faster than n^2, so that light which becomes rarer with n in any constant proportion has a finite variance.
+    #[inline]
+    fn survives<C: Chooser>(&mut self, q: f64, chooser: &mut C) -> bool {
+        let survives = chooser.happens(q);
+        if survives {
+            self.weight = self.weight.map(|w| w * (1.0 / q));
+        }
+        survives
+    }
+
+    /// Russian roulette by length: whether the path goes on after so many events. Total reflection keeps light in glass without
+    /// loss, often for good. A path of [`FREE_EVENTS`] becomes one of n events with the probability (FREE_EVENTS / n)^2, so that
+    /// its length has a mean of 2 FREE_EVENTS however it is caught; its weight grows no faster than n^2, so that light
+    /// which becomes rarer with n in any constant proportion has a finite variance.
     #[inline]
     pub fn outlast<C: Chooser>(&mut self, events: u32, chooser: &mut C) -> bool {
-        if events <= FREE_EVENTS {
-            return true;
+        events <= FREE_EVENTS || {
+            let ratio = f64::from(events - 1) / f64::from(events);
+            self.survives(ratio * ratio, chooser)
         }
-        let ratio = f64::from(events - 1) / f64::from(events);
-        let q = ratio * ratio;
-        if !chooser.happens(q) {
-            return false;
-        }
-        self.scale(1.0 / q);
-        true
-    }
-}
-
-impl Dielectric {
-    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye path that goes
-    /// on `through` from the medium of index n_i, on the side `front`, sees that part of the luminance in n_t. (E. Veach, "Robust
-    /// Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2.)
-    #[inline]
-    pub fn luminance_factor(&self, front: bool) -> f64 {
-        let ratio = self.ior_outside / self.ior;
-        if front { ratio * ratio } else { 1.0 / (ratio * ratio) }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
-    use crate::surface::script::Script;
+    use crate::surface::tests::Script;
 
     #[test]
     fn mirrors_multiply_and_roulette_keeps_the_mean() {
         let mut weight = EyeWeight::ONE;
-        let mut script = Script { events: vec![true, false], ..Script::default() };
-        let mirror = [0.5, 0.25, 0.0];
-        assert!(weight.attenuate(mirror, &mut script));
+        let mut script = Script::new([true, false], []);
+        let mirror = |part| Way { direction: DVec3::Z, part, luminance_factor: 1.0 };
+        let meet = |weight: &mut EyeWeight, part, script: &mut Script| {
+            weight.follow(&mirror(part), 1.0);
+            weight.roulette(script)
+        };
+        let red = [0.5, 0.25, 0.0];
+        assert!(meet(&mut weight, red, &mut script));
         assert_eq!(weight.weight(), [0.5, 0.25, 0.0]);
         assert!(script.asked.is_empty());
         // Y = 0.2126/4 + 0.7152/16 = 0.0979, then 0.0377: below 1/16.
-        assert!(weight.attenuate(mirror, &mut script) && script.asked.is_empty());
-        assert!(weight.attenuate(mirror, &mut script));
+        assert!(meet(&mut weight, red, &mut script) && script.asked.is_empty());
+        assert!(meet(&mut weight, red, &mut script));
         assert_eq!(script.asked.len(), 1);
         let chance = script.asked[0];
         assert!((weight.weight()[0] * chance - 0.125).abs() < 1e-16);
         assert!((luminance(weight.weight()) - ROULETTE_BELOW).abs() < 1e-16);
-        assert!(!weight.attenuate(mirror, &mut script));
+        assert!(!meet(&mut weight, red, &mut script));
         let mut dark = EyeWeight::ONE;
-        assert!(!dark.attenuate([0.0; 3], &mut Script::default()));
+        assert!(!meet(&mut dark, [0.0; 3], &mut Script::default()));
     }
 
     #[test]
     fn a_long_path_goes_on_ever_more_rarely_and_heavier() {
         let mut weight = EyeWeight::ONE;
-        let mut script = Script { events: vec![true; 1000 - FREE_EVENTS as usize], ..Script::default() };
+        let mut script = Script::new([true; 1000 - FREE_EVENTS as usize], []);
         assert!((1..=1000).all(|events| weight.outlast(events, &mut script)));
         assert!(script.events.is_empty(), "free until {FREE_EVENTS}, then a draw for each event");
         let chance: f64 = script.asked.iter().product();
         assert!((chance / (32.0f64 / 1000.0).powi(2) - 1.0).abs() < 1e-12);
         assert!((weight.weight()[1] * chance - 1.0).abs() < 1e-12);
-        assert!(!weight.outlast(1001, &mut Script { events: vec![false], ..Script::default() }));
-    }
-
-    #[test]
-    fn into_glass_the_eye_sees_luminance_divided_by_the_square_of_the_index() {
-        let glass = Dielectric { ior_outside: 1.0, ior: 1.5 };
-        assert!((glass.luminance_factor(true) - 1.0 / 2.25).abs() < 1e-15);
-        assert!((glass.luminance_factor(false) - 2.25).abs() < 1e-15);
+        assert!(!weight.outlast(1001, &mut Script::new([false], [])));
     }
 }

@@ -1,31 +1,81 @@
 //! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of arrival.
 //!
-//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`.
+//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`. With a `transmittance` it is
+//! [`crate::surface::DiffuseTransmission`].
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 use glam::DVec3;
 
 use crate::math::frame::frame_about;
 use crate::math::trig::sin_cos;
 use crate::sample::coordinates::{Chooser, Purpose};
-use crate::surface::{Event, Incidence, Reflectance, Throughput};
+use crate::surface::{Event, Incidence, Kind, Leg, Model, Reflectance, Throughput};
 
-/// Scatters what the throughput lets go on; density cos(theta)/pi in solid angle.
-#[inline]
-pub fn scatter<C: Chooser, T: Throughput>(
-    reflectance: &Reflectance,
-    at: &Incidence,
-    chooser: &mut C,
-    carried: &mut T,
-) -> Event {
-    if !carried.reflect(reflectance, chooser) {
-        return Event::Absorbed;
+/// A perfectly diffuse surface: f = reflectance / pi between directions of one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lambertian {
+    reflectance: Reflectance,
+}
+
+impl Lambertian {
+    /// A surface that reflects these parts of the flux, on either side.
+    pub fn new(reflectance: Reflectance) -> Self {
+        Self { reflectance }
     }
+
+    /// Reflected parts of the flux.
+    pub fn reflectance(&self) -> &Reflectance {
+        &self.reflectance
+    }
+}
+
+impl Model for Lambertian {
+    #[inline]
+    fn kind(&self) -> Kind {
+        if self.reflectance.luminous() > 0.0 { Kind::Scattering } else { Kind::Absorbing }
+    }
+
+    fn requires(&self) -> &'static [&'static str] {
+        if self.kind() == Kind::Scattering { &["diffuse scattering"] } else { &[] }
+    }
+
+    fn is_coloured(&self) -> bool {
+        self.reflectance.is_coloured()
+    }
+
+    /// Scatters what the throughput lets go on.
+    #[inline]
+    fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, carried: &mut T) -> Event {
+        if !carried.reflect(&self.reflectance, chooser) {
+            return Event::Absorbed;
+        }
+        Event::Leaves { direction: sample_cosine(at.facet, chooser), through: false, corrected: false }
+    }
+
+    #[inline]
+    fn eval(&self, _outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
+        if wi.front == wo.front { value(&self.reflectance) } else { [0.0; 3] }
+    }
+
+    #[inline]
+    fn even_value(&self) -> Option<[f64; 3]> {
+        Some(value(&self.reflectance))
+    }
+}
+
+/// f of a diffuse surface that scatters these parts into one side, 1/sr.
+#[inline]
+pub(super) fn value(parts: &Reflectance) -> [f64; 3] {
+    parts.by_channel().map(|part| part * FRAC_1_PI)
+}
+
+/// Direction of density cos(theta) / pi about a unit normal; unit.
+#[inline]
+pub(super) fn sample_cosine<C: Chooser>(normal: DVec3, chooser: &mut C) -> DVec3 {
     let u1 = chooser.uniform(Purpose::Scatter);
     let u2 = chooser.uniform(Purpose::Scatter);
-    let direction = frame_about(at.facet) * cosine_direction(u1, u2);
-    Event::Leaves { direction: direction.normalize(), through: false, corrected: false }
+    (frame_about(normal) * cosine_direction(u1, u2)).normalize()
 }
 
 /// Cosine-distributed direction about +Z: sin^2(theta) = u1, phi = 2 pi u2.
@@ -39,23 +89,37 @@ pub fn cosine_direction(u1: f64, u2: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::script::Script;
+    use crate::surface::tests::Script;
     use crate::surface::throughput::Grey;
 
     #[test]
     fn directions_stay_on_the_side_of_arrival_even_at_the_last_uniform() {
         let largest = 1.0 - f64::EPSILON / 2.0;
+        let wall = Lambertian::new(Reflectance::new(0.5).unwrap());
         for facet in [DVec3::Z, -DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
             for u in [0.0, 0.5, largest] {
                 let at = Incidence { direction: -facet, facet, smooth: facet, front: true };
-                let mut script =
-                    Script { events: vec![true], uniforms: vec![largest, u], ..Script::default() };
-                match scatter(&Reflectance::grey(0.5), &at, &mut script, &mut Grey) {
+                match wall.scatter(&at, &mut Script::new([true], [largest, u]), &mut Grey) {
                     Event::Leaves { direction, through: false, .. } => assert!(direction.dot(facet) > 0.0),
                     other => panic!("{other:?}"),
                 }
             }
         }
+    }
+
+    #[test]
+    fn it_is_equally_bright_from_its_lit_side() {
+        let wall = Lambertian::new(Reflectance::rgb([0.5, 0.25, 1.0]).unwrap());
+        let bright = [0.5 * FRAC_1_PI, 0.25 * FRAC_1_PI, FRAC_1_PI];
+        let (a, b) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.8, 0.6));
+        for outward in [DVec3::Z, -DVec3::Z] {
+            let eval = |wi, wo| wall.eval(outward, Leg::new(wi, outward), Leg::new(wo, outward));
+            assert_eq!((eval(a, b), eval(-a, -b)), (bright, bright));
+            assert_eq!((eval(a, -b), eval(-a, b)), ([0.0; 3], [0.0; 3]));
+        }
+        assert_eq!(wall.even_value(), Some(bright));
+        assert_eq!(wall.kind(), Kind::Scattering);
+        assert_eq!(Lambertian::new(Reflectance::new(0.0).unwrap()).kind(), Kind::Absorbing);
     }
 
     #[test]

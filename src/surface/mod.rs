@@ -1,49 +1,86 @@
-//! What a surface does with a photon.
+//! What surfaces do with light: one contract for all materials, and a file for each.
 //!
-//! Contract of every model. A photon arrives along `direction` (unit, pointing the way it travels) on the side that the
-//! normals of [`Incidence`] look to; the model decides by the chooser whether it is absorbed and, if not, where it
-//! goes: away from the surface on the side of arrival, or `through` it. A photon carries flux, so the chance of going on
-//! is the albedo and no cosine or eta^2 factor is left over; what a reflectance does to a photon with weights is told by its
-//! [`Throughput`]. Coordinates are drawn only where there is more than one outcome.
+//! **Directions** are unit vectors in world space. That of [`Incidence`] points the way the photon travels, towards the
+//! surface, and the normals beside it stand on the side of arrival. wi and wo ([`Leg`]) both point away from the surface:
+//! light comes from wi and leaves along wo; `outward` is the facet's outward normal. Sides are state: `front` is the side
+//! that the outward normal points to.
 //!
-//! To add a model: a file beside these, a line in [`Material`] and an arm in [`Material::scatter`]; the scene file's name for it
-//! is given in `scene`.
+//! **Measures.** A photon carries flux: [`Material::scatter`] lets it go on with the probability of the albedo, and no cosine
+//! and no eta^2 is left over; what that does to a weight per channel is a matter of its [`Throughput`]. [`Material::eval`] is
+//! f, the BSDF without a cosine, and [`Material::pdf`] the density of scattered directions in solid angle; both leave
+//! out what goes on specularly, which [`Material::specular`] tells for eye paths, in luminance. Coordinates are drawn only where
+//! there is more than one outcome.
+//!
+//! To add a material: a file beside these that answers [`Model`], its line in [`Material`] and in `ask` below it, its keys in
+//! `files/scene_toml/material` and docs/SCENE.md.
 
+mod absorber;
 pub mod dielectric;
+pub mod diffuse_transmission;
 pub mod eye;
+pub mod incidence;
 pub mod lambertian;
 pub mod mirror;
 pub mod reference;
 pub mod reflectance;
 pub mod tabulated;
+#[cfg(test)]
+pub(crate) mod tests;
 pub mod throughput;
-pub mod value;
+
+use std::collections::BTreeMap;
 
 use glam::DVec3;
 
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use diffuse_transmission::DiffuseTransmission;
 pub use eye::EyeWeight;
+pub use incidence::{Incidence, Leg};
+pub use lambertian::Lambertian;
+pub use mirror::Mirror;
 pub use reference::Reference;
 pub use reflectance::{Reflectance, luminance, luminance_of};
 pub use tabulated::Tabulated;
 pub use throughput::{Fixed, Grey, Rgb, Throughput};
 
-/// A photon at a surface.
-#[derive(Debug, Clone, Copy)]
-pub struct Incidence {
-    /// Where the photon is heading; unit.
-    pub direction: DVec3,
-    /// Normal of the facet, unit, on the side of arrival: direction . facet < 0.
-    pub facet: DVec3,
-    /// Smooth normal, unit, on the same side of the surface as the outward normal that `facet` is plus or minus.
-    pub smooth: DVec3,
-    /// Whether the side of arrival is the one the outward normal points to.
-    pub front: bool,
+/// Everything a surface can be made of.
+#[derive(Debug, Clone)]
+pub enum Material {
+    /// A smooth interface between two transparent media.
+    Dielectric(Dielectric),
+    /// A mirror of one reflectance at every angle.
+    Mirror(Mirror),
+    /// Perfectly diffuse on the side of arrival.
+    Lambertian(Lambertian),
+    /// A thin sheet, perfectly diffuse on both sides.
+    DiffuseTransmission(DiffuseTransmission),
+    /// Scatters as a table says.
+    Tabulated(Box<Tabulated>),
+    /// Ends every photon.
+    Absorber,
 }
 
-/// What became of the photon.
+/// `ask!(material, question(arguments))`: what the material's model answers.
+macro_rules! ask {
+    ($material:expr, $question:ident($($argument:expr),*)) => {
+        match $material {
+            Material::Dielectric(model) => Model::$question(model, $($argument),*),
+            Material::Mirror(model) => Model::$question(model, $($argument),*),
+            Material::Lambertian(model) => Model::$question(model, $($argument),*),
+            Material::DiffuseTransmission(model) => Model::$question(model, $($argument),*),
+            Material::Tabulated(model) => Model::$question(&**model, $($argument),*),
+            Material::Absorber => Model::$question(&absorber::Absorber, $($argument),*),
+        }
+    };
+}
+
+/// All that [`Material::requires`] answers, in the order of reports.
+pub const REQUIREMENTS: [&str; 5] =
+    ["refraction", "mirror reflection", "diffuse scattering", "diffuse transmission", "tabulated scattering"];
+
+/// What became of a photon at a surface.
 #[derive(Debug, Clone, Copy)]
 pub enum Event {
     /// It ends here.
@@ -52,7 +89,7 @@ pub enum Event {
     BelowHorizon,
     /// It goes on.
     Leaves {
-        /// Where to; unit.
+        /// Where to; unit, on the side that it leaves on.
         direction: DVec3,
         /// Whether it crossed to the other side.
         through: bool,
@@ -62,29 +99,108 @@ pub enum Event {
     },
 }
 
-/// Everything a surface can be made of.
-#[derive(Debug, Clone)]
-pub enum Material {
-    /// A smooth interface between two transparent media.
-    Dielectric(Dielectric),
-    /// A mirror of this reflectance at every angle.
-    Mirror {
-        /// Part of the flux that is reflected.
-        reflectance: Reflectance,
-    },
-    /// Perfectly diffuse on the side of arrival.
-    Lambertian {
-        /// Part of the flux that is reflected.
-        reflectance: Reflectance,
-    },
-    /// Scatters as a table says.
-    Tabulated(Box<Tabulated>),
-    /// Ends every photon.
-    Absorber,
+/// What a material does with light, as far as the ways on are concerned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Light goes on in single directions.
+    Specular,
+    /// Light is spread over a solid angle: there photons are kept, and eye paths see light.
+    Scattering,
+    /// None goes on.
+    Absorbing,
+}
+
+/// A specular way on for an eye path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Way {
+    /// Where the path goes on to; unit.
+    pub direction: DVec3,
+    /// Part of the flux of light on this way, towards the eye, that goes on to the eye, by channel.
+    pub part: [f64; 3],
+    /// (n_i / n_t)^2, of the media before and behind the surface: luminance seen from the first is that part of the
+    /// luminance in the second. 1 where the medium is the same.
+    pub luminance_factor: f64,
+}
+
+/// The specular ways on for an eye path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ways {
+    /// On the side of arrival.
+    pub mirrored: Option<Way>,
+    /// On the other side.
+    pub through: Option<Way>,
+    /// Nothing is absorbed: the parts sum to 1, each the same for all channels.
+    pub lossless: bool,
+}
+
+/// The contract of [`Material`], for one model. Where there is a default it is that of a model that has no such thing.
+pub trait Model {
+    /// [`Material::kind`].
+    fn kind(&self) -> Kind;
+    /// [`Material::requires`].
+    fn requires(&self) -> &'static [&'static str];
+    /// [`Material::is_coloured`].
+    fn is_coloured(&self) -> bool;
+    /// [`Material::scatter`].
+    fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, carried: &mut T) -> Event;
+    /// [`Material::eval`].
+    #[inline]
+    fn eval(&self, _outward: DVec3, _wi: Leg, _wo: Leg) -> [f64; 3] {
+        [0.0; 3]
+    }
+    /// [`Material::even_value`].
+    #[inline]
+    fn even_value(&self) -> Option<[f64; 3]> {
+        None
+    }
+    /// [`Material::specular`].
+    #[inline]
+    fn specular(&self, _at: &Incidence) -> Ways {
+        Ways::default()
+    }
+    /// [`Material::is_transparent`].
+    fn is_transparent(&self) -> bool {
+        false
+    }
+    /// [`Material::proposals`].
+    fn proposals(&self, _at: &Incidence) -> [f64; 2] {
+        [0.0; 2]
+    }
+    /// Bytes of its table, by an address that all copies share.
+    fn table_bytes(&self) -> Option<(usize, usize)> {
+        None
+    }
 }
 
 impl Material {
-    /// Decides what happens to a photon that arrived, and to what it carries.
+    /// Which of three kinds it is.
+    #[inline]
+    pub fn kind(&self) -> Kind {
+        ask!(self, kind())
+    }
+
+    /// Whether it spreads light over a solid angle.
+    #[inline]
+    pub fn scatters(&self) -> bool {
+        self.kind() == Kind::Scattering
+    }
+
+    /// The machinery it needs, of [`REQUIREMENTS`].
+    pub fn requires(&self) -> &'static [&'static str] {
+        ask!(self, requires())
+    }
+
+    /// Whether it treats channels differently.
+    pub fn is_coloured(&self) -> bool {
+        ask!(self, is_coloured())
+    }
+
+    /// Whether light passes into another medium. (A sheet that scatters light through it has the same on both sides.)
+    pub fn is_transparent(&self) -> bool {
+        ask!(self, is_transparent())
+    }
+
+    /// What happens to a photon that arrived, and to what it carries.
     #[inline]
     pub fn scatter<C: Chooser, T: Throughput>(
         &self,
@@ -92,91 +208,45 @@ impl Material {
         chooser: &mut C,
         carried: &mut T,
     ) -> Event {
-        match self {
-            Self::Dielectric(dielectric) => dielectric.scatter(at, chooser),
-            Self::Mirror { reflectance } => mirror::scatter(reflectance, at, chooser, carried),
-            Self::Lambertian { reflectance } => lambertian::scatter(reflectance, at, chooser, carried),
-            Self::Tabulated(table) => table.scatter(at, chooser, carried),
-            Self::Absorber => Event::Absorbed,
-        }
+        ask!(self, scatter(at, chooser, carried))
     }
 
-    /// Whether it treats channels differently.
-    pub fn is_coloured(&self) -> bool {
-        match self {
-            Self::Mirror { reflectance } | Self::Lambertian { reflectance } => reflectance.is_coloured(),
-            Self::Tabulated(table) => table.is_coloured(),
-            Self::Dielectric(_) | Self::Absorber => false,
-        }
+    /// f, 1/sr, by channel: luminance towards wo per illuminance from wi. What goes on specularly has no value: 0.
+    #[inline]
+    pub fn eval(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
+        ask!(self, eval(outward, wi, wo))
     }
 
-    /// Whether photons pass into another medium. (What a table lets through is in the same medium: a thin sheet.)
-    pub fn is_transparent(&self) -> bool {
-        matches!(self, Self::Dielectric(_))
-    }
-}
-
-/// The smooth normal where the photon arrives in front of it, else the facet's; true in the second case.
-#[inline]
-fn working_normal(at: &Incidence) -> (DVec3, bool) {
-    if at.direction.dot(at.smooth) < 0.0 { (at.smooth, false) } else { (at.facet, true) }
-}
-
-/// A direction that left on the wrong side of the facet, mirrored in the facet's plane (METHOD 1); `towards` is the
-/// facet normal on the side where the photon must be. True where it was mirrored.
-#[inline]
-fn keep_side(direction: DVec3, towards: DVec3) -> (DVec3, bool) {
-    let along = direction.dot(towards);
-    if along < 0.0 { (direction - 2.0 * along * towards, true) } else { (direction, false) }
-}
-
-#[cfg(test)]
-pub(crate) mod script {
-    //! A chooser that follows a script: for tests of single events.
-    use crate::sample::coordinates::{Chooser, Purpose};
-
-    /// Events and uniforms in order; panics when it runs out, so a test also counts what is asked for.
-    #[derive(Debug, Default)]
-    pub struct Script {
-        pub events: Vec<bool>,
-        pub uniforms: Vec<f64>,
-        pub asked: Vec<f64>,
+    /// f where it is the same for all wi and wo of one side and 0 for those of different sides, 1/sr, by channel.
+    #[inline]
+    pub fn even_value(&self) -> Option<[f64; 3]> {
+        ask!(self, even_value())
     }
 
-    impl Chooser for Script {
-        fn happens(&mut self, probability: f64) -> bool {
-            if probability <= 0.0 || probability >= 1.0 {
-                return probability >= 1.0;
-            }
-            self.asked.push(probability);
-            self.events.remove(0)
-        }
+    /// Density, 1/sr in solid angle, of the directions into which [`Self::scatter`] sends photons of white light from wi,
+    /// times the probability that it scatters them: the luminance of f times the cosine of wo. Its integral over all wo is the
+    /// luminous albedo, less what goes on specularly or below the horizon.
+    #[inline]
+    pub fn pdf(&self, outward: DVec3, wi: Leg, wo: Leg) -> f64 {
+        luminance(self.eval(outward, wi, wo)) * wo.direction.dot(outward).abs()
+    }
 
-        fn uniform(&mut self, _: Purpose) -> f64 {
-            self.uniforms.remove(0)
-        }
+    /// Where an eye path goes on to that arrived: light comes from there to the eye.
+    #[inline]
+    pub fn specular(&self, at: &Incidence) -> Ways {
+        ask!(self, specular(at))
+    }
+
+    /// Proposals that the scattering of a photon of white light takes by rejection, on average over whether it is scattered: inside
+    /// the cells of a table, and against a slice's largest value. 0 where no table is sampled.
+    pub fn proposals(&self, at: &Incidence) -> [f64; 2] {
+        ask!(self, proposals(at))
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wrong_side_is_mirrored_in_the_facet() {
-        let d = DVec3::new(0.6, 0.0, -0.8);
-        assert_eq!(keep_side(d, DVec3::Z), (DVec3::new(0.6, 0.0, 0.8), true));
-        assert_eq!(keep_side(d, -DVec3::Z), (d, false));
-    }
-
-    #[test]
-    fn photon_behind_the_smooth_normal_uses_the_facet() {
-        let at = Incidence {
-            direction: DVec3::new(0.8, 0.0, -0.6),
-            facet: DVec3::Z,
-            smooth: DVec3::new(0.8, 0.0, 0.6),
-            front: true,
-        };
-        assert_eq!(working_normal(&at), (DVec3::Z, true));
-    }
+/// Bytes held by the tables of these materials; copies share theirs.
+pub fn memory_bytes(materials: &[Material]) -> usize {
+    let tables: BTreeMap<_, _> =
+        materials.iter().filter_map(|material| ask!(material, table_bytes())).collect();
+    tables.values().sum()
 }

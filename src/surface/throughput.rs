@@ -196,13 +196,13 @@ fn product(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::script::Script;
+    use crate::surface::tests::Script;
 
     #[test]
     fn roulette_by_luminance_keeps_the_luminance_at_one() {
-        let red = Reflectance::rgb([0.8, 0.1, 0.05]);
+        let red = Reflectance::rgb([0.8, 0.1, 0.05]).unwrap();
         let mut photon = Rgb::WHITE;
-        let mut script = Script { events: vec![true; 200], ..Script::default() };
+        let mut script = Script::new([true; 200], []);
         for reflection in 0..200 {
             assert!(photon.reflect(&red, &mut script));
             assert!((luminance(photon.weight()) - 1.0).abs() < 1e-14, "after {reflection}");
@@ -217,9 +217,9 @@ mod tests {
     fn weight_times_chance_is_the_product_of_the_reflectances() {
         let walls = [[0.7, 0.2, 0.1], [0.1, 0.6, 0.3], [0.5, 0.5, 0.5]];
         let mut photon = Rgb::WHITE;
-        let mut script = Script { events: vec![true; 3], ..Script::default() };
+        let mut script = Script::new([true; 3], []);
         for wall in walls {
-            assert!(photon.reflect(&Reflectance::rgb(wall), &mut script));
+            assert!(photon.reflect(&Reflectance::rgb(wall).unwrap(), &mut script));
         }
         let chance: f64 = script.asked.iter().product();
         for (channel, weight) in photon.weight().into_iter().enumerate() {
@@ -231,18 +231,18 @@ mod tests {
     #[test]
     fn what_reflects_nothing_of_the_photon_ends_it_without_a_draw() {
         let mut photon = Rgb::WHITE;
-        let mut script = Script { events: vec![true], ..Script::default() };
-        assert!(photon.reflect(&Reflectance::rgb([1.0, 0.0, 0.0]), &mut script));
-        assert!(!photon.reflect(&Reflectance::rgb([0.0, 1.0, 1.0]), &mut script));
+        let mut script = Script::new([true], []);
+        assert!(photon.reflect(&Reflectance::rgb([1.0, 0.0, 0.0]).unwrap(), &mut script));
+        assert!(!photon.reflect(&Reflectance::rgb([0.0, 1.0, 1.0]).unwrap(), &mut script));
         let mut fresh = Rgb::WHITE;
-        assert!(!fresh.reflect(&Reflectance::grey(0.0), &mut script));
+        assert!(!fresh.reflect(&Reflectance::new(0.0).unwrap(), &mut script));
         assert_eq!(script.asked.len(), 1);
     }
 
     #[test]
     fn a_fixed_number_of_reflections_draws_nothing_and_multiplies() {
         let mut photon = Fixed::white(2);
-        let wall = Reflectance::rgb([0.5, 0.25, 0.0]);
+        let wall = Reflectance::rgb([0.5, 0.25, 0.0]).unwrap();
         let mut script = Script::default();
         assert!(photon.reflect(&wall, &mut script) && photon.reflect(&wall, &mut script));
         assert_eq!(photon.weight(), [0.25, 0.0625, 0.0]);

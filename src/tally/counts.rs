@@ -1,4 +1,4 @@
-//! Shared counters of one replicate, and the sums over replicates.
+//! Counters of one replicate that threads share, and the sums over replicates.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -24,21 +24,9 @@ impl Counts {
         self.0[cell].fetch_add(amount, Ordering::Relaxed);
     }
 
-    /// Count of a cell.
-    pub fn get(&self, cell: usize) -> u64 {
-        self.0[cell].load(Ordering::Relaxed)
-    }
-
     /// All counts.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = u64> + '_ {
         self.0.iter().map(|c| c.load(Ordering::Relaxed))
-    }
-
-    /// Adds the counts of another tally of the same cells.
-    pub fn merge(&mut self, other: &Self) {
-        for (a, b) in self.0.iter_mut().zip(other.iter()) {
-            *a.get_mut() += b;
-        }
     }
 
     /// Sets every counter to zero.
@@ -49,8 +37,8 @@ impl Counts {
     }
 }
 
-/// Sum and sum of squares of a count over replicates, cell by cell: all that a standard error needs, whatever the
-/// number of replicates.
+/// Sum and sum of squares of a count over replicates, cell by cell: all that a standard error needs, whatever
+/// the number of replicates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Moments {
     /// Sum of the counts.
@@ -65,20 +53,18 @@ impl Moments {
         Self { sum: vec![0; cells], square: vec![0; cells] }
     }
 
-    /// Starts again with the counts of the first replicate, as far as it is.
-    pub fn restart(&mut self, counts: impl Iterator<Item = u64>) {
-        for ((sum, square), count) in self.sum.iter_mut().zip(&mut self.square).zip(counts) {
-            *sum = count;
-            *square = u128::from(count) * u128::from(count);
-        }
-    }
-
     /// Takes in the counts of a finished replicate.
     pub fn absorb(&mut self, counts: impl Iterator<Item = u64>) {
         for ((sum, square), count) in self.sum.iter_mut().zip(&mut self.square).zip(counts) {
             *sum += count;
             *square += u128::from(count) * u128::from(count);
         }
+    }
+
+    /// Zeros again.
+    pub fn clear(&mut self) {
+        self.sum.fill(0);
+        self.square.fill(0);
     }
 }
 
@@ -87,23 +73,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_are_exact_beyond_64_bits() {
-        let mut moments = Moments::new(1);
-        for _ in 0..3 {
-            moments.absorb([1u64 << 60].into_iter());
-        }
-        assert_eq!((moments.sum[0], moments.square[0]), (3 << 60, 3 << 120));
+    fn moments_are_sums_and_sums_of_squares_exact_beyond_64_bits() {
+        let mut moments = Moments::new(3);
+        moments.absorb([1u64 << 60, 3, 0].into_iter());
+        moments.absorb([1u64 << 60, 5, 0].into_iter());
+        moments.absorb([1u64 << 60, 0, 7].into_iter());
+        assert_eq!(moments.sum, [3 << 60, 8, 7]);
+        assert_eq!(moments.square, [3 << 120, 34, 49]);
+        moments.clear();
+        assert_eq!(moments, Moments::new(3));
     }
 
     #[test]
-    fn counts_merge_and_clear() {
-        let (mut a, b) = (Counts::new(2), Counts::new(2));
-        a.add(0);
-        b.add(0);
-        b.add(1);
-        a.merge(&b);
-        assert_eq!(a.iter().collect::<Vec<_>>(), [2, 1]);
-        a.clear();
-        assert_eq!(a.get(0), 0);
+    fn counts_add_from_any_thread_and_clear() {
+        let mut counts = Counts::new(3);
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let counts = &counts;
+                scope.spawn(move || (0..1000).for_each(|_| counts.add(thread % 2)));
+            }
+        });
+        counts.add_amount(2, 5);
+        counts.add_amount(2, 6);
+        assert_eq!(counts.iter().collect::<Vec<_>>(), [2000, 2000, 11]);
+        counts.clear();
+        assert_eq!(counts.iter().collect::<Vec<_>>(), [0; 3]);
     }
 }

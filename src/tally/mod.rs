@@ -1,14 +1,15 @@
 //! Order-free exact sums of hits.
 //!
-//! Where every photon has unit weight a tally is an array of integer counts; where photons carry weights these are rounded
-//! to a quantum and added as integers. So tally(A and B) = merge(tally(A), tally(B)) for any split of the photons, bit for
-//! bit.
+//! Where every photon has unit weight a tally is an array of integer counts; where photons carry weights
+//! these are rounded to a quantum and added as integers. So tally(A and B) = merge(tally(A), tally(B)) for
+//! any split of the photons, bit for bit.
 
 pub mod counts;
 pub mod receiver;
 pub mod weighted;
 pub mod wide_sum;
 
-pub use counts::{Counts, Moments};
-pub use receiver::{FixedPointSink, ReceiverSink, Receivers};
-pub use weighted::{ChannelSink, WeightedReceivers};
+pub use counts::Moments;
+pub use receiver::{ReceiverSink, Receivers};
+pub use weighted::WeightedReceivers;
+pub use wide_sum::WideSum;

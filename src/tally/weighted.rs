@@ -1,8 +1,8 @@
 //! Receivers of weighted photons: sums of weights by channel in the cells of a scene's receivers.
 //!
-//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of photons and
-//! of arrivals a photon can make, so that no sum can overflow. Integers may be added in any order, by any thread, and give
-//! the same bits; each arrival is rounded by at most half a quantum.
+//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of
+//! photons and of arrivals a photon can make, so that no sum can overflow. Integers may be added in any
+//! order, by any thread, and give the same bits; each arrival is rounded by at most half a quantum.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -33,11 +33,12 @@ pub struct WeightedReceivers<'s> {
 }
 
 impl<'s> WeightedReceivers<'s> {
-    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at most `arrivals`
-    /// arrivals of weights from 0 to 1.
+    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at
+    /// most `arrivals` arrivals of weights from 0 to 1.
     ///
     /// # Errors
-    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the point.
+    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the
+    /// point.
     pub fn new(
         geometry: &'s Geometry,
         receivers: &'s [Receiver],
@@ -77,29 +78,9 @@ impl<'s> WeightedReceivers<'s> {
         ChannelSink { receivers: self, scale: self.scale() }
     }
 
-    /// Number of cells of all receivers, one after another.
-    pub fn len(&self) -> usize {
-        self.sums.len()
-    }
-
-    /// Whether there are no cells.
-    pub fn is_empty(&self) -> bool {
-        self.sums.is_empty()
-    }
-
     /// Sum of the weights that arrived in a cell, by channel, in photons.
     pub fn weight(&self, cell: usize) -> [f64; 3] {
-        self.quanta(cell).map(|quanta| quanta as f64 / self.scale())
-    }
-
-    /// The same in quanta of 2^-[`Self::fraction_bits`] photons: exact.
-    pub fn quanta(&self, cell: usize) -> [u64; 3] {
-        std::array::from_fn(|channel| self.sums[cell][channel].load(Ordering::Relaxed))
-    }
-
-    /// Bits after the point.
-    pub fn fraction_bits(&self) -> u32 {
-        self.fraction_bits
+        self.sums[cell].each_ref().map(|sum| sum.load(Ordering::Relaxed) as f64 / self.scale())
     }
 
     fn scale(&self) -> f64 {
@@ -130,7 +111,42 @@ impl Sink<Fixed> for ChannelSink<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::receiver::tests::{BOTH, receiver, send, square_and_box};
     use super::*;
+    use crate::surface::Throughput;
+
+    #[test]
+    fn weights_add_up_by_channel_and_receiver() {
+        let geometry = square_and_box();
+        let all = [[2, 1], [1, 1]].map(|cells| receiver(&geometry, "square", Some(cells), BOTH));
+        let tally = WeightedReceivers::new(&geometry, &all, 4, 1).unwrap();
+        let mut sink = tally.sink();
+        send(&geometry, &mut sink, &Fixed::white(0), (0.2, 0.5, 0.5), 0);
+        let tinted = Fixed::white(0).tinted([1.0, 0.5, 0.25]);
+        send(&geometry, &mut sink, &tinted, (0.7, 0.5, -0.5), 1);
+        send(&geometry, &mut sink, &tinted, (0.7, 0.5, 0.5), 1);
+        assert_eq!(tally.weight(0), [1.0; 3]);
+        assert_eq!(tally.weight(1), [2.0, 1.0, 0.5]);
+        assert_eq!(tally.weight(2), [3.0, 2.0, 1.5]);
+    }
+
+    #[test]
+    fn an_arrival_is_rounded_to_the_nearest_quantum() {
+        let geometry = square_and_box();
+        let all = [receiver(&geometry, "square", Some([1, 1]), BOTH)];
+        let tally = WeightedReceivers::new(&geometry, &all, (1 << 32) - 1, 1).unwrap();
+        let quantum = 1.0 / (1u64 << 32) as f64;
+        let carried = Fixed::white(0).tinted([0.49, 0.51, 1.2].map(|w| w * quantum));
+        send(&geometry, &mut tally.sink(), &carried, (0.5, 0.5, 0.5), 0);
+        assert_eq!(tally.weight(0), [0.0, quantum, quantum]);
+    }
+
+    #[test]
+    fn too_many_cells_are_refused() {
+        let geometry = square_and_box();
+        let all = [[1 << 12, 1 << 12], [1, 1]].map(|cells| receiver(&geometry, "square", Some(cells), BOTH));
+        assert_eq!(WeightedReceivers::new(&geometry, &all, 1, 1).unwrap_err().kind(), Kind::Limit);
+    }
 
     #[test]
     fn the_quantum_leaves_room_for_every_arrival() {
@@ -144,8 +160,8 @@ mod tests {
             ((1 << 32) - 1, 1, 32),
         ] {
             let tally = bits(photons, arrivals).unwrap();
-            assert_eq!(tally.fraction_bits(), expected, "{photons} x {arrivals}");
-            let most = (u128::from(photons) * u128::from(arrivals)) << tally.fraction_bits();
+            assert_eq!(tally.fraction_bits, expected, "{photons} x {arrivals}");
+            let most = (u128::from(photons) * u128::from(arrivals)) << tally.fraction_bits;
             assert!(most <= u128::from(u64::MAX));
         }
         assert!(bits(1 << 32, 1).is_err());

@@ -21,7 +21,7 @@ const BATCHES: u64 = 64;
 pub fn advance<P: Points>(scene: &Scene, points: &P, how: &How<'_>, start: u64, wanted: u64) -> u64 {
     let gives = |index: u64| {
         let mut coordinates = Coordinates::new(points, index, how.reuse);
-        scene.emitters.emit_by(how.sampling, &mut coordinates).is_some()
+        scene.emitters.emit(how.sampling, &mut coordinates).is_some()
     };
     let (mut at, mut left) = (start, wanted);
     while left > 0 && !how.interrupt.load(Ordering::Relaxed) {

@@ -2,14 +2,13 @@
 //!
 //! [`walk()`] follows one photon; [`ledger`] counts where photons begin and end; [`census`] collects what a batch of photons
 //! did beside that: coordinates used, exceptions made; [`parallel`] runs ranges of photon indices over threads;
-//! [`attempts`] counts the points that photons by rejection take, [`weighted`] traces photons with weights for references.
+//! [`attempts`] counts the points that photons by rejection take.
 
 pub mod attempts;
 pub mod census;
 pub mod ledger;
 pub mod parallel;
 pub mod walk;
-pub mod weighted;
 
 pub use census::Census;
 pub use ledger::Ledger;

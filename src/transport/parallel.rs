@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use crate::emitter::Emitters;
 use crate::sample::coordinates::Coordinates;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -20,7 +21,7 @@ use super::walk::{Sink, walk};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.
-pub(super) const BATCH: u64 = 1 << 14;
+const BATCH: u64 = 1 << 14;
 
 /// What a range of photons left beside the sink's sums.
 #[derive(Debug, Clone)]
@@ -70,14 +71,14 @@ pub struct How<'a> {
 /// The first coordinate of a Sobol' point is the bit-reversed index, scrambled digit by digit, so in this order
 /// neighbours have neighbouring first coordinates: the same emitter, the same table cell, nearly the same ray. They visit
 /// the same nodes of the search tree while these are in the cache. The sums do not depend on the order.
-pub(super) struct Order {
+struct Order {
     start: u64,
     length: u64,
     bits: u32,
 }
 
 impl Order {
-    pub(super) fn new(range: &Range<u64>) -> Self {
+    fn new(range: &Range<u64>) -> Self {
         let length = range.end.saturating_sub(range.start);
         Self { start: range.start, length, bits: length.max(2).next_power_of_two().trailing_zeros() }
     }
@@ -88,13 +89,13 @@ impl Order {
     }
 
     /// Ranges of slots, one a task.
-    pub(super) fn batches(&self) -> impl ParallelIterator<Item = Range<u64>> + use<> {
+    fn batches(&self) -> impl ParallelIterator<Item = Range<u64>> + use<> {
         let slots = self.slots();
         let batch = move |k: u64| k * BATCH..slots.min((k + 1) * BATCH);
         (0..slots.div_ceil(BATCH)).into_par_iter().map(batch)
     }
 
-    pub(super) fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
+    fn indices(&self, slots: Range<u64>) -> impl Iterator<Item = u64> + use<> {
         let Self { start, length, bits } = *self;
         slots
             .map(move |slot| slot.reverse_bits() >> (64 - bits))
@@ -104,9 +105,11 @@ impl Order {
 }
 
 /// Traces the photons of these indices, each of which starts with the throughput `carried` in its emitter's colour:
-/// [`crate::surface::Grey`] unless the scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
+/// [`crate::surface::Grey`] unless the scene has colour. `emitters` are the scene's, or give its light in another way
+/// ([`Emitters::with_weights`]). `sink` makes one handle a batch, all of which add to the same sums.
 pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
+    emitters: &Emitters,
     points: &P,
     range: Range<u64>,
     carried: T,
@@ -119,7 +122,8 @@ pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
         .batches()
         .fold(empty, |mut traced, slots| {
             let before = traced.ledger.total_emitted();
-            trace_batch(scene, points, order.indices(slots), carried, how, &mut sink(), &mut traced);
+            let indices = order.indices(slots);
+            trace_batch((scene, emitters), points, indices, carried, how, &mut sink(), &mut traced);
             (how.progress)(traced.ledger.total_emitted() - before);
             traced
         })
@@ -130,7 +134,7 @@ pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
 }
 
 fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
-    scene: &Scene,
+    (scene, emitters): (&Scene, &Emitters),
     points: &P,
     indices: impl Iterator<Item = u64>,
     carried: T,
@@ -144,11 +148,12 @@ fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
             return;
         }
         let mut coordinates = Coordinates::sampling_by(points, index, how.reuse, how.sampling);
-        let Some((emitter, emission)) = scene.emitters.emit_by(how.sampling, &mut coordinates) else {
+        let Some((emitter, emission)) = emitters.emit(how.sampling, &mut coordinates) else {
             traced.census.count_rejected(coordinates.drawn_for());
             continue;
         };
         traced.ledger.begin(emitter);
+        sink.start(emission.weight);
         let exceptions = &mut traced.census.exceptions;
         let start = scene.start(emitter);
         let carried = carried.tinted(scene.emitter_colour(emitter));

@@ -33,6 +33,9 @@ pub struct Arrival<'a, T = Grey> {
 pub trait Sink<T = Grey> {
     /// A photon arrives.
     fn arrive(&mut self, arrival: &Arrival<'_, T>);
+
+    /// A photon starts; its arrivals follow. `weight` is [`Emission::weight`].
+    fn start(&mut self, _weight: f64) {}
 }
 
 /// How a photon ended.
@@ -57,7 +60,7 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     sink: &mut S,
     exceptions: &mut Exceptions,
 ) -> End {
-    let Emission { mut origin, mut direction } = emission;
+    let Emission { mut origin, mut direction, .. } = emission;
     for events in 0..MAX_EVENTS {
         let Some(hit) =
             scene.geometry.nearest(origin, direction, &whereabouts, &mut exceptions.skipped_crossings)
@@ -65,13 +68,7 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
             return End::Escaped;
         };
         sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
-        let sign = if hit.front { 1.0 } else { -1.0 };
-        let at = Incidence {
-            direction,
-            facet: hit.normal * sign,
-            smooth: hit.shading_normal * sign,
-            front: hit.front,
-        };
+        let at = Incidence::of(&hit, direction);
         match scene.material(hit.surface).scatter(&at, chooser, &mut carried) {
             Event::Absorbed => return End::Absorbed(hit.surface),
             Event::BelowHorizon => {
@@ -88,3 +85,6 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     }
     End::Killed
 }
+
+#[cfg(test)]
+mod tests;

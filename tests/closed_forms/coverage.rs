@@ -93,7 +93,7 @@ fn ninety_five_percent_intervals_contain_the_exact_value_95_percent_of_the_time(
             let [mut b, mut d, mut a] = [(0, 0); 3];
             for (cell, &exact) in exact.iter().enumerate() {
                 let covered = u32::from(covers(outcome.illuminance_lx(0, cell, area), exact));
-                empty += u64::from(outcome.cells[0].sum[cell] == 0);
+                empty += u64::from(outcome.cells()[0].sum[cell] == 0);
                 let class = if expected_hits[cell] >= 40.0 {
                     Some(&mut b)
                 } else if expected_hits[cell] < 10.0 {

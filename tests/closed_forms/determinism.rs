@@ -6,9 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
-use caustix::files::exr::{Maps, OwnedData, read_maps};
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
+use caustix::files::scene_toml;
 use caustix::files::scene_toml::read;
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
@@ -23,6 +21,7 @@ use caustix::transport::parallel::{How, Traced, trace_range};
 use caustix::transport::{Census, Ledger, walk};
 
 use crate::support::data::project;
+use crate::support::maps::{Maps, Samples, read_maps};
 use crate::support::random::Generator;
 use crate::support::scenes::{every_scene_file, run_with_killed};
 
@@ -114,9 +113,9 @@ fn with_small_picture(text: &str) -> String {
 
 /// Channels as bits: the pixels beyond the last face of a mesh are NaN, which is not equal to itself.
 fn bits(maps: &Maps) -> Vec<(&str, Vec<u32>)> {
-    let of = |data: &OwnedData| match data {
-        OwnedData::F32(values) => values.iter().map(|v| v.to_bits()).collect(),
-        OwnedData::U32(values) => values.clone(),
+    let of = |data: &Samples| match data {
+        Samples::F32(values) => values.iter().map(|v| v.to_bits()).collect(),
+        Samples::U32(values) => values.clone(),
     };
     maps.channels.iter().map(|(name, data)| (name.as_str(), of(data))).collect()
 }
@@ -179,7 +178,7 @@ fn part<'s, P: Points>(scene: &'s Scene, points: &P, range: Range<u64>) -> (Rece
     let receivers = Receivers::new(&scene.geometry, &scene.receivers);
     let interrupt = AtomicBool::new(false);
     let how = How { sampling: Sampling::default(), reuse: true, interrupt: &interrupt, progress: &|_| {} };
-    let traced = trace_range(scene, points, range, Grey, how, || receivers.sink());
+    let traced = trace_range(scene, &scene.emitters, points, range, Grey, how, || receivers.sink());
     assert!(traced.complete);
     (receivers, traced)
 }
@@ -198,16 +197,18 @@ fn assert_additive<P: Points>(scene: &Scene, points: &P, n: u64, random: &mut im
         for i in (1..ranges.len()).rev() {
             ranges.swap(i, (random() % (i as u64 + 1)) as usize);
         }
-        let mut sum = Receivers::new(&scene.geometry, &scene.receivers);
+        let mut sum: Vec<Vec<u64>> = scene.receivers.iter().map(|r| vec![0; r.cells.len()]).collect();
         let mut ledger = Ledger::new(scene.emitters.as_slice().len(), scene.geometry.surfaces().len());
         let mut census = Census::default();
         for range in ranges {
             let (receivers, traced) = part(scene, points, range);
-            sum.merge(&receivers);
+            for (sum, part) in sum.iter_mut().flatten().zip(counts(scene, &receivers).iter().flatten()) {
+                *sum += part;
+            }
             ledger.merge(&traced.ledger);
             census.merge(&traced.census);
         }
-        assert!(counts(scene, &sum) == counts(scene, &whole));
+        assert!(sum == counts(scene, &whole));
         assert_eq!(ledger, traced.ledger);
         assert_eq!(census, traced.census);
     }
@@ -218,8 +219,8 @@ fn the_tally_of_two_sets_is_the_merge_of_their_tallies() {
     // SplitMix64: cuts and orders, the same every time.
     let mut generator = Generator(7);
     let mut random = || generator.next();
-    let built_in = build(&Description::built_in().unwrap()).unwrap();
-    let pool = build(&read(project().join("scenes/pool.toml")).unwrap()).unwrap();
+    let built_in = scene_toml::built_in().unwrap().build().unwrap();
+    let pool = read(project().join("scenes/pool.toml")).unwrap().build().unwrap();
     for scene in [&built_in, &pool] {
         assert_additive(scene, &OwenPoints::new(1, 0), 40_000, &mut random);
         assert_additive(scene, &IndependentPoints::new(1, 3), 20_001, &mut random);
@@ -229,7 +230,7 @@ fn the_tally_of_two_sets_is_the_merge_of_their_tallies() {
 #[test]
 fn the_ledger_closes_in_every_scene() {
     for file in every_scene_file() {
-        let scene = build(&read(&file).unwrap()).unwrap();
+        let scene = read(&file).unwrap().build().unwrap();
         for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
             let n = 3 * 5001;
             let outcome = run_with_killed(&scene, sequence, 5001, 3, seed);
@@ -249,7 +250,7 @@ fn the_ledger_closes_in_every_scene() {
             // The accounts that errors are computed from are the ledger's own numbers.
             let accounts: Vec<u64> =
                 ledger.absorbed.iter().copied().chain([ledger.escaped, ledger.killed]).collect();
-            assert_eq!(outcome.accounts.sum, accounts);
+            assert_eq!(outcome.accounts().sum, accounts);
         }
     }
 }
@@ -260,14 +261,14 @@ fn a_photon_lost_on_purpose_is_seen() {
     impl caustix::transport::Sink for Nothing {
         fn arrive(&mut self, _: &caustix::transport::Arrival<'_>) {}
     }
-    let scene = build(&Description::built_in().unwrap()).unwrap();
+    let scene = scene_toml::built_in().unwrap().build().unwrap();
     let points = OwenPoints::new(1, 0);
     let n = 4096;
     for doctored in [None, Some(0), Some(1234), Some(n - 1)] {
         let mut ledger = Ledger::new(1, scene.geometry.surfaces().len());
         for index in 0..n {
             let mut coordinates = Coordinates::new(&points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
             ledger.begin(emitter);
             let mut exceptions = Exceptions::default();
             let start = scene.start(emitter);

@@ -4,9 +4,8 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::files::scene_toml::build::build;
+use caustix::files::bytes::Base;
 use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
 use caustix::run::{Estimate, Plan, Settings, trace};
 use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
@@ -33,7 +32,7 @@ fn text(lamps: &[&str], reflectance: &str, events: &str) -> String {
 
 fn scene(lamps: &[&str], reflectance: &str, events: &str) -> Scene {
     let text = text(lamps, reflectance, events);
-    build(&parse(&text, "test.toml", Base::Directory(".".into())).unwrap()).unwrap()
+    parse(&text, "test.toml", Base::Directory(".".into())).unwrap().build().unwrap()
 }
 
 fn flux(scene: &Scene) -> Estimate {
@@ -92,7 +91,9 @@ fn each_photon_starts_with_its_own_emitter_s_colour() {
         interrupt: &AtomicBool::new(false),
         progress: &|_| {},
     };
-    trace_range(&scene, &OwenPoints::new(1, 0), 0..4096, Rgb::WHITE, how, || FirstWeights(&weights));
+    trace_range(&scene, &scene.emitters, &OwenPoints::new(1, 0), 0..4096, Rgb::WHITE, how, || {
+        FirstWeights(&weights)
+    });
     let weights = weights.into_inner().unwrap();
     let count = |c: [f64; 3]| weights.iter().filter(|w| **w == c).count();
     // 100 lm against 300 lm: a net of 4096 points splits exactly, up to the point on the edge.
@@ -119,7 +120,9 @@ fn a_walk_that_carries_no_colour_is_not_touched_by_it() {
             progress: &|_| {},
         };
         let scene = scene(&[lamp], "0.5", "all");
-        trace_range(&scene, &OwenPoints::new(1, 0), 0..512, Grey, how, || Directions(&found));
+        trace_range(&scene, &scene.emitters, &OwenPoints::new(1, 0), 0..512, Grey, how, || {
+            Directions(&found)
+        });
         let mut found = found.into_inner().unwrap();
         found.sort_unstable();
         found
@@ -142,7 +145,7 @@ fn only_colour_that_is_not_white_makes_a_scene_coloured() {
 #[test]
 fn wrong_colours_are_refused() {
     let errors = |lamp: &str| -> Vec<Diagnostic> {
-        parse(&text(&[lamp], "0.5", "all"), "test.toml", Base::Directory(".".into())).expect_err(lamp)
+        parse(&text(&[lamp], "0.5", "all"), "test.toml", Base::Directory(".".into())).err().expect(lamp)
     };
     for (lamp, line, kind, required) in [
         ("colour = [0, 0, 0]", 5, Kind::Range, "flux_lm says how bright"),

@@ -6,7 +6,7 @@ use caustix::emitter::{Emitter, Isotropic};
 use caustix::error::Kind;
 use caustix::geometry::{Rectangle, Shape, Surface};
 use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::surface::Material;
 use glam::DVec3;
 
@@ -14,14 +14,10 @@ use glam::DVec3;
 fn lamp_over_floor() -> Scene {
     let corner = DVec3::new(-1e6, -1e6, 0.0);
     let floor = Rectangle::new(corner, DVec3::X * 2e6, DVec3::Y * 2e6).unwrap();
-    let surface = Surface { name: "floor".into(), shape: Shape::Rectangle(floor) };
-    let lamp = Emitter::Isotropic(Isotropic { position: DVec3::Z, flux_lm: 1000.0 });
-    let parts = SceneParts {
-        surfaces: vec![(surface, Material::Absorber)],
-        emitters: vec![("lamp".into(), lamp)],
-        ..SceneParts::default()
-    };
-    Scene::new(parts).unwrap()
+    let lamp = Emitter::Isotropic(Isotropic::new(DVec3::Z, 1000.0).unwrap());
+    let mut scene = SceneBuilder::new();
+    scene.surface("floor", floor.into(), Material::Absorber).emitter("lamp", lamp);
+    scene.build().unwrap()
 }
 
 /// A run that is interrupted once this many photons are done.
@@ -58,7 +54,7 @@ fn an_interrupt_in_a_later_replicate_leaves_the_finished_ones() {
     let outcome = interrupted_after((2 << 18) + 1, &settings).unwrap();
     assert_eq!((outcome.stopped_by, outcome.replicates), (StoppedBy::Interrupt, 2));
     assert_eq!((outcome.photons, outcome.ledger.total_emitted()), (2 << 18, 2 << 18));
-    assert_eq!(outcome.accounts.sum[0], outcome.ledger.absorbed[0]);
+    assert_eq!(outcome.accounts().sum[0], outcome.ledger.absorbed[0]);
 }
 
 #[test]

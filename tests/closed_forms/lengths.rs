@@ -1,78 +1,90 @@
-//! A scene in another unit of length.
+//! A scene in another unit of length, and one moved: the text of a scene file with its lengths changed.
 
-use caustix::files::scene_toml::description::{
-    BeamSection, Description, EmitterShape, ReliefDescription, ShapeDescription,
-};
-use caustix::scene::camera::Bandwidth;
+use std::path::Path;
 
-/// A description with every length times `s`, its camera's included.
-pub fn scaled(mut d: Description, s: f64) -> Description {
-    for e in &mut d.emitters {
-        e.position.value *= s;
-        match &mut e.shape {
-            EmitterShape::Collimated { section: BeamSection::Disc { radius } } => *radius *= s,
-            EmitterShape::Collimated { section: BeamSection::Rectangle { width, height } }
-            | EmitterShape::Panel { width, height } => {
-                *width *= s;
-                *height *= s;
-            }
-            EmitterShape::Photometric { .. } | EmitterShape::Isotropic => {}
+use caustix::files::bytes::Base;
+use caustix::files::scene_toml::parse;
+use caustix::scene::Scene;
+use toml::{Table, Value};
+
+use crate::support::data::project;
+
+/// A scene file as TOML values.
+pub fn table(path: &Path) -> Table {
+    std::fs::read_to_string(path).unwrap().parse().unwrap()
+}
+
+/// The scene of such values; paths are relative to `scenes/`.
+pub fn scene(table: &Table) -> Scene {
+    let text = toml::to_string(table).unwrap();
+    let file = parse(&text, "test.toml", Base::Directory(project().join("scenes")));
+    file.and_then(|file| file.build()).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+}
+
+/// Applies `change` to a number, or to all numbers of a list.
+fn change(value: &mut Value, with: &dyn Fn(usize, f64) -> f64, at: usize) {
+    match value {
+        Value::Integer(i) => *value = Value::Float(with(at, *i as f64)),
+        Value::Float(x) => *x = with(at, *x),
+        Value::Array(items) => items.iter_mut().enumerate().for_each(|(i, item)| change(item, with, i)),
+        other => panic!("{other} is no length"),
+    }
+}
+
+fn times(table: &mut Table, keys: &[&str], s: f64) {
+    for key in keys {
+        if let Some(value) = table.get_mut(*key) {
+            change(value, &|_, x| x * s, 0);
         }
     }
-    for surface in &mut d.surfaces {
-        surface.transform.translate *= s;
-        match &mut surface.shape {
-            ShapeDescription::Mesh { .. } => surface.transform.scale *= s,
-            ShapeDescription::Rectangle { corner, edge_u, edge_v } => {
-                *corner *= s;
-                *edge_u *= s;
-                *edge_v *= s;
-            }
-            ShapeDescription::Box { min, max } => {
-                *min *= s;
-                *max *= s;
-            }
-            ShapeDescription::Sphere { center, radius } => {
-                *center *= s;
-                *radius *= s;
-            }
-            ShapeDescription::Paraboloid { vertex, focal_length, radius, .. } => {
-                *vertex *= s;
-                *focal_length *= s;
-                *radius *= s;
-            }
-            ShapeDescription::Heightfield(field) => {
-                field.origin *= s;
-                field.size = field.size.map(|x| x * s);
-                match &mut field.relief {
-                    ReliefDescription::Waves { waves, .. } => {
-                        for wave in waves {
-                            wave.amplitude *= s;
-                            wave.wavelength *= s;
-                        }
-                    }
-                    ReliefDescription::Noise { amplitude, octaves, .. } => {
-                        *amplitude *= s;
-                        octaves.iter_mut().for_each(|o| o.wavelength *= s);
-                    }
-                    ReliefDescription::Image { height, .. } => *height = height.map(|h| h * s),
-                }
-            }
+}
+
+fn parts<'t>(scene: &'t mut Table, key: &str) -> impl Iterator<Item = &'t mut Table> {
+    let list = scene.get_mut(key).and_then(Value::as_array_mut).map(|list| list.as_mut_slice());
+    list.unwrap_or_default().iter_mut().map(|part| part.as_table_mut().unwrap())
+}
+
+/// The scene with every length times `s`, its camera's included.
+pub fn scaled(mut scene: Table, s: f64) -> Table {
+    parts(&mut scene, "emitter").for_each(|e| times(e, &["position", "radius", "size"], s));
+    for surface in parts(&mut scene, "surface") {
+        let lengths = [
+            "translate",
+            "corner",
+            "edge_u",
+            "edge_v",
+            "min",
+            "max",
+            "center",
+            "radius",
+            "vertex",
+            "focal_length",
+        ];
+        times(surface, &lengths, s);
+        times(surface, &["origin", "size", "height"], s);
+        if surface["type"].as_str() == Some("mesh") {
+            surface.entry("scale").or_insert(Value::Float(1.0));
+            times(surface, &["scale"], s);
+        }
+        parts(surface, "waves").for_each(|w| times(w, &["amplitude", "wavelength"], s));
+        if let Some(noise) = surface.get_mut("noise").and_then(Value::as_table_mut) {
+            times(noise, &["amplitude"], s);
+            parts(noise, "octaves").for_each(|o| times(o, &["wavelength"], s));
         }
     }
-    if let Some(camera) = &mut d.camera {
-        let spec = &mut camera.spec;
-        spec.position *= s;
-        spec.lens_radius_m *= s;
-        spec.focus_m *= s;
-        spec.bandwidth = match spec.bandwidth {
-            Bandwidth::Radius(r) => Bandwidth::Radius(r * s),
-            Bandwidth::Progressive(r) => Bandwidth::Progressive(r * s),
-            Bandwidth::AtLeast { radius_m, neighbours } => {
-                Bandwidth::AtLeast { radius_m: radius_m * s, neighbours }
-            }
-            of_number @ (Bandwidth::Automatic | Bandwidth::Nearest(_)) => of_number,
-        };
+    if let Some(camera) = scene.get_mut("camera").and_then(Value::as_table_mut) {
+        times(camera, &["position", "look_at", "lens_radius", "focus", "radius", "progressive_radius"], s);
     }
-    d
+    scene
+}
+
+/// The scene with its emitters and surfaces moved.
+pub fn shifted(mut scene: Table, by: [f64; 3]) -> Table {
+    let zero = || Value::Array(vec![Value::Float(0.0); 3]);
+    for (key, place) in [("emitter", "position"), ("surface", "translate")] {
+        for part in parts(&mut scene, key) {
+            change(part.entry(place).or_insert_with(zero), &|i, x| x + by[i], 0);
+        }
+    }
+    scene
 }

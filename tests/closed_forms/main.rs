@@ -6,7 +6,9 @@ mod support;
 
 mod coverage;
 mod determinism;
+mod diffuse_sheet;
 mod direct;
+mod disc;
 mod discontinuous;
 mod emitter_colour;
 mod interrupted;

@@ -14,17 +14,16 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::AtomicBool;
 
-use caustix::emitter::collimated::CrossSection;
-use caustix::emitter::{Collimated, Emitter};
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
+use caustix::emitter::{AimFrame, Beam, BeamSection, Emitter};
 use caustix::geometry::{Mesh, MeshParts, Smoothing};
 use caustix::geometry::{Shape, Surface};
 use caustix::picture::{AnyPicture, trace_picture};
 use caustix::run::{Outcome, trace};
-use caustix::scene::camera::{CameraSpec, Filter, Method};
+use caustix::scene::camera::{Camera, CameraSpec, Filter, Method};
+use caustix::scene::receiver::ReceiverEvents;
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Material, Reflectance};
+use caustix::scene::{Scene, SceneBuilder};
+use caustix::surface::{Material, Mirror, Reflectance};
 use glam::DVec3;
 
 use crate::support::judge::{SIGNIFICANCE, judge};
@@ -61,33 +60,28 @@ fn cup(inclination: f64, floor: Material, camera: Option<CameraSpec>) -> Scene {
     let (sin, cos) = inclination.sin_cos();
     let (direction, across) = (DVec3::new(sin, 0.0, -cos), DVec3::new(cos, 0.0, sin));
     let width = 1.02 * (cos + height * sin);
-    let section = CrossSection::Rectangle(across * (0.5 * width), DVec3::Y * 1.01);
+    let section = BeamSection::Rectangle { width, height: 2.02 };
+    let frame = AimFrame::new(direction, Some(DVec3::Y)).unwrap();
     let centre = across * (0.5 * width - 0.01) - direction * 3.0;
     let flux_lm = width * 2.02;
-    let receiver = |name: &str, cells| ReceiverSpec {
-        name: name.into(),
-        surface: "floor".into(),
-        cells: Some(cells),
-        side: ReceiverSide::Front,
-        events: ReceiverEvents::Indirect,
+    let receiver = |name, cells| {
+        let spec = ReceiverSpec::new(name, "floor").unwrap().with_cells(cells).unwrap();
+        spec.of_events(ReceiverEvents::Indirect)
     };
-    let mirror = Material::Mirror { reflectance: Reflectance::grey(1.0) };
+    let mirror = Material::Mirror(Mirror::new(Reflectance::new(1.0).unwrap()));
     let plate = rectangle("floor", DVec3::NEG_Y, DVec3::X, DVec3::Y * 2.0);
-    Scene::new(SceneParts {
-        surfaces: vec![(plate, floor), (wall, mirror)],
-        emitters: vec![(
-            "sun".into(),
-            Emitter::Collimated(Collimated { centre, direction, section, flux_lm }),
-        )],
-        receivers: vec![
-            receiver("fine", [FINE, 2 * FINE]),
-            receiver("coarse", [COARSE, 2 * COARSE]),
-            receiver("thin", [THIN, THIN_ROWS]),
-        ],
-        camera,
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface(plate.name, plate.shape, floor)
+        .surface(wall.name, wall.shape, mirror)
+        .emitter("sun", Emitter::Beam(Beam::new(centre, frame, section, flux_lm).unwrap()))
+        .receiver(receiver("fine", [FINE, 2 * FINE]))
+        .receiver(receiver("coarse", [COARSE, 2 * COARSE]))
+        .receiver(receiver("thin", [THIN, THIN_ROWS]));
+    if let Some(camera) = camera {
+        scene.camera(Camera::new(camera).unwrap());
+    }
+    scene.build().unwrap()
 }
 
 fn traced(inclination: f64) -> Outcome {
@@ -197,10 +191,10 @@ fn the_ridge_of_the_receiver_is_the_nephroid_and_its_cusp_is_at_half_the_radius(
         assert_ridges(&format!("{inclination_deg} degrees"), |i, above, j| {
             // Row 0 is that of the greatest y.
             let row = if above { FINE - 1 - j } else { FINE + j };
-            outcome.cells[0].sum[(row * FINE + i) as usize] as f64
+            outcome.cells()[0].sum[(row * FINE + i) as usize] as f64
         });
         // Along the axis, in a row so thin that the branches leave it within a cell of the cusp: (w / 2)^(2/3) 3/4 = 0.003.
-        let row = &outcome.cells[2].sum[(THIN_ROWS / 2 * THIN) as usize..][..THIN as usize];
+        let row = &outcome.cells()[2].sum[(THIN_ROWS / 2 * THIN) as usize..][..THIN as usize];
         let peak = (0..row.len()).max_by_key(|i| row[*i]).unwrap();
         println!("{inclination_deg} degrees: {} photons in the cell at {peak} of {THIN}", row[peak]);
         assert!(peak.abs_diff(THIN as usize / 2) <= 1, "{peak}: {row:?}");

@@ -7,17 +7,12 @@
 
 use std::f64::consts::PI;
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
-use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
 
-use crate::support::data::project;
 use crate::support::judge::{assert_cells, assert_total};
 use crate::support::quadrature::cell_means;
-use crate::support::scenes::{run, scene};
+use crate::support::scenes::{run, scene, try_scene};
 
 const WIDTH: f64 = 1.3;
 const HEIGHT: f64 = 0.5;
@@ -125,14 +120,12 @@ fn nothing_shines_backwards() {
     let above = plate(0.2, -0.1, 1.0, 4).replace("0.0]\nedge_u", "2.0]\nedge_u") + "side = \"both\"\n";
     let outcome =
         run(&scene(&(panel(CENTRE, [WIDTH, HEIGHT], FLUX_LM) + &above)), Sequence::SobolOwen, 1 << 12, 4, 4);
-    assert_eq!(outcome.totals.sum[0], 0);
+    assert_eq!(outcome.totals().sum[0], 0);
     assert_eq!(outcome.ledger.escaped, outcome.photons);
 }
 
 fn refused(text: &str) -> String {
-    let description = parse(text, "test.toml", Base::Directory(project().join("scenes"))).unwrap();
-    let result: Result<Scene, _> = build(&description);
-    let errors = result.err().unwrap_or_else(|| panic!("accepted:\n{text}"));
+    let errors = try_scene(text).err().unwrap_or_else(|| panic!("accepted:\n{text}"));
     assert_eq!(errors.len(), 1, "{errors:?}");
     assert_eq!(errors[0].line(), Some(1), "{errors:?}");
     errors[0].to_string()

@@ -3,12 +3,10 @@
 //! There is no absolute epsilon, so a scale of a power of two changes no bit but exponents. Other scales and shifts round
 //! every coordinate anew; what that may change is stated here and tested.
 
-use std::path::PathBuf;
+use std::path::{Path as File, PathBuf};
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
-use caustix::files::scene_toml::read;
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
 use caustix::scene::receiver::Cells;
 use caustix::sequence::Sequence;
@@ -19,22 +17,12 @@ use caustix::transport::{Arrival, End, Sink, walk};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::lengths;
 use crate::support::scenes::{run, scene_files};
 
 /// A scene with every length times `s`.
-fn scaled(d: Description, s: f64) -> Scene {
-    build(&crate::lengths::scaled(d, s)).unwrap_or_else(|e| panic!("{e:?}"))
-}
-
-/// The whole scene moved.
-fn shifted(mut d: Description, by: DVec3) -> Scene {
-    d.emitters.iter_mut().for_each(|e| e.position.value += by);
-    d.surfaces.iter_mut().for_each(|s| s.transform.translate += by);
-    build(&d).unwrap_or_else(|e| panic!("{e:?}"))
-}
-
-fn description(path: &std::path::Path) -> Description {
-    read(path).unwrap_or_else(|e| panic!("{e:?}"))
+fn scaled(file: &File, s: f64) -> Scene {
+    lengths::scene(&lengths::scaled(lengths::table(file), s))
 }
 
 /// One arrival.
@@ -68,7 +56,7 @@ impl Sink for Record<'_> {
 
 fn path(scene: &Scene, points: &OwenPoints, index: u64) -> Path {
     let mut coordinates = Coordinates::new(points, index, true);
-    let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+    let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
     let mut steps = Vec::new();
     let mut exceptions = Exceptions::default();
     let end = walk(
@@ -103,9 +91,9 @@ fn cells(scene: &Scene, path: &Path) -> Vec<(usize, u32, u32)> {
 fn powers_of_two_change_no_hit() {
     let points = OwenPoints::new(1, 0);
     for file in continuous_scenes() {
-        let original = scaled(description(&file), 1.0);
+        let original = scaled(&file, 1.0);
         for s in [1024.0, 1.0 / 1024.0] {
-            let other = scaled(description(&file), s);
+            let other = scaled(&file, s);
             (0..1u64 << 15).into_par_iter().for_each(|index| {
                 let (a, b) = (path(&original, &points, index), path(&other, &points, index));
                 assert_eq!(a.end, b.end, "{}: photon {index}", file.display());
@@ -116,7 +104,12 @@ fn powers_of_two_change_no_hit() {
                 run(&original, Sequence::SobolOwen, 1 << 13, 4, 2),
                 run(&other, Sequence::SobolOwen, 1 << 13, 4, 2),
             );
-            assert_eq!((a.cells, a.ledger, a.census), (b.cells, b.ledger, b.census), "{}", file.display());
+            assert_eq!(
+                (a.cells(), &a.ledger, &a.census),
+                (b.cells(), &b.ledger, &b.census),
+                "{}",
+                file.display()
+            );
             assert_eq!(a.photon_lm.to_bits(), b.photon_lm.to_bits());
         }
     }
@@ -156,9 +149,9 @@ const SCALED_APART_M: f64 = 1e-10;
 fn other_scales_change_at_most_one_photon_in_a_million() {
     let (mut photons, mut changed) = (0, 0);
     for file in continuous_scenes() {
-        let original = scaled(description(&file), 1.0);
+        let original = scaled(&file, 1.0);
         for s in [1e3, 1e-3] {
-            let other = scaled(description(&file), s);
+            let other = scaled(&file, s);
             let n = 1 << 18;
             let (k, apart) = changes(&original, &other, n, |p| p / s);
             println!("{} x {s}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());
@@ -186,7 +179,8 @@ fn a_kilometre_away_arrivals_agree_to_a_nanometre() {
     let by = DVec3::new(1000.0, -1000.0, 1000.0);
     let (mut photons, mut changed) = (0, 0);
     for file in continuous_scenes() {
-        let (original, other) = (scaled(description(&file), 1.0), shifted(description(&file), by));
+        let (original, other) =
+            (scaled(&file, 1.0), lengths::scene(&lengths::shifted(lengths::table(&file), by.to_array())));
         let n = 1 << 17;
         let (k, apart) = changes(&original, &other, n, |p| p - by);
         println!("{}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());

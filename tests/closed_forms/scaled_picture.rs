@@ -7,15 +7,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
-use caustix::files::scene_toml::read;
 use caustix::picture::camera::Film;
 use caustix::picture::{AnyPicture, PictureSummary, trace_picture};
 use caustix::run::Outcome;
-use caustix::scene::camera::{CameraSpec, Method};
 
-use crate::lengths::scaled;
+use toml::Table;
+
+use crate::lengths;
 use crate::support::pictures::{plan, unwatched};
 use crate::support::scenes::camera_scene_files;
 
@@ -26,8 +24,8 @@ fn bits<const C: usize>(film: &Film<C>, factor: f64) -> Vec<u64> {
 }
 
 /// The scene at this scale: its run, the bits of its picture in the luminance of scale 1, and how that was made.
-fn seen(description: &Description, s: f64) -> (Outcome, Vec<u64>, PictureSummary) {
-    let scene = build(&scaled(description.clone(), s)).unwrap_or_else(|e| panic!("{e:?}"));
+fn seen(file: &Table, s: f64) -> (Outcome, Vec<u64>, PictureSummary) {
+    let scene = lengths::scene(&lengths::scaled(file.clone(), s));
     let plan = plan(1 << 15, 4);
     let (outcome, picture) = trace_picture(&scene, &plan, false, unwatched(&AtomicBool::new(false))).unwrap();
     let film = match &picture {
@@ -40,17 +38,19 @@ fn seen(description: &Description, s: f64) -> (Outcome, Vec<u64>, PictureSummary
 #[test]
 fn powers_of_two_change_no_bit_of_a_picture() {
     for file in camera_scene_files() {
-        let mut description = read(&file).unwrap_or_else(|e| panic!("{e:?}"));
-        let original = description.camera.as_ref().unwrap().spec.clone();
-        for (lens_radius_m, method) in [(0.0, Method::Map), (0.002, Method::Map), (0.0, Method::Splat)] {
-            let spec = CameraSpec { lens_radius_m, method, pixels: [40, 30], samples: 4, ..original.clone() };
-            description.camera.as_mut().unwrap().spec = spec;
-            let at = format!("{}, {method:?}, lens {lens_radius_m}", file.display());
-            let (outcome, film, summary) = seen(&description, 1.0);
+        let mut scene = lengths::table(&file);
+        for (lens_radius, method) in [(0.0, "map"), (0.002, "map"), (0.0, "splat")] {
+            let camera = scene["camera"].as_table_mut().unwrap();
+            camera.insert("lens_radius".into(), lens_radius.into());
+            camera.insert("method".into(), method.into());
+            camera.insert("pixels".into(), vec![40, 30].into());
+            camera.insert("samples".into(), 4.into());
+            let at = format!("{}, {method}, lens {lens_radius}", file.display());
+            let (outcome, film, summary) = seen(&scene, 1.0);
             assert!(film.iter().any(|b| *b != 0) && summary.photons_kept > 100, "{at}: {summary:?}");
             for s in [1024.0, 1.0 / 1024.0] {
-                let (other_outcome, other_film, other) = seen(&description, s);
-                assert!(outcome.cells == other_outcome.cells, "{at} x {s}");
+                let (other_outcome, other_film, other) = seen(&scene, s);
+                assert!(outcome.cells() == other_outcome.cells(), "{at} x {s}");
                 assert_eq!(outcome.ledger, other_outcome.ledger, "{at} x {s}");
                 assert_eq!(
                     (summary.photons_kept, summary.cost),

@@ -89,7 +89,7 @@ fn orders(outcome: &Outcome, r: f64) -> Vec<(u64, f64)> {
     (0..ORDERS)
         .flat_map(|m| {
             let at = m as usize;
-            [(outcome.cells[0].sum[at], passed(r, m)), (outcome.cells[1].sum[at], sent_back(r, m))]
+            [(outcome.cells()[0].sum[at], passed(r, m)), (outcome.cells()[1].sum[at], sent_back(r, m))]
         })
         .collect()
 }

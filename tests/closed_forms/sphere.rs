@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
@@ -68,7 +69,7 @@ fn hits<P: Points>(scene: &Scene, points: &P, n: u64) -> Vec<u32> {
     (0..n)
         .map(|index| {
             let mut coordinates = Coordinates::new(points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut coordinates);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
             let mut sink = Hits::default();
             let end = walk(
                 scene,
@@ -168,7 +169,7 @@ fn any_file_off_centre_gives_uniform_indirect_illuminance() {
         assert_cells(file, &scene, &outcome, 0, &[uniform; 128]);
         let exact = a / (1.0 - a) * scene.emitters.flux_lm();
         assert_total(file, &outcome, outcome.receiver_flux_lm(0), exact);
-        assert_eq!(outcome.totals.sum[1], 0, "light outside the sphere");
+        assert_eq!(outcome.totals().sum[1], 0, "light outside the sphere");
         assert_eq!(outcome.ledger.absorbed[0], outcome.photons);
     }
 }

@@ -1,21 +1,23 @@
 //! Tabulated surfaces in closed scenes: against the Lambertian material, and where all light must end in one place.
 
 use caustix::emitter::{Emitter, Isotropic};
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::Coordinates;
+use caustix::sample::method::Sampling;
 use caustix::scattering::{LobeSide, ScatterTable};
+use caustix::scene::receiver::ReceiverSide;
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::surface::tabulated::{Energy, Options, Sides};
-use caustix::surface::{Grey, Material, Reference, Reflectance, Tabulated};
+use caustix::surface::{Grey, Lambertian, Material, Reference, Reflectance, Tabulated};
 use caustix::transport::census::Exceptions;
 use caustix::transport::{Arrival, End, Sink, walk};
 use glam::DVec3;
 
 use crate::support::judge::{SIGNIFICANCE, sidak, student_p};
+use crate::support::local::albedo as albedo_of;
 use crate::support::scenes::run;
 use crate::support::statistics::z_test;
 use crate::support::tables::{lambert, lobe, steps};
@@ -37,21 +39,17 @@ fn surface(name: &str, shape: Shape, bsdf: Material) -> (Surface, Material) {
 fn room(walls: Material, shelf: Material) -> Scene {
     let box_shape = Shape::Mesh(box_mesh(DVec3::splat(-1.0), DVec3::new(1.0, 1.2, 0.9)).unwrap());
     let plate = Rectangle::new(DVec3::new(-0.7, -0.6, -0.3), DVec3::X * 1.2, DVec3::Y * 1.1).unwrap();
-    let receiver = |front: bool| ReceiverSpec {
-        name: if front { "up" } else { "down" }.into(),
-        surface: "shelf".into(),
-        cells: Some([4, 4]),
-        side: if front { ReceiverSide::Front } else { ReceiverSide::Back },
-        events: ReceiverEvents::All,
-    };
-    let lamp = Emitter::Isotropic(Isotropic { position: DVec3::new(0.3, 0.4, 0.5), flux_lm: 1000.0 });
-    Scene::new(SceneParts {
-        surfaces: vec![surface("walls", box_shape, walls), surface("shelf", Shape::Rectangle(plate), shelf)],
-        emitters: vec![("lamp".into(), lamp)],
-        receivers: vec![receiver(true), receiver(false)],
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let receiver =
+        |name, side| ReceiverSpec::new(name, "shelf").unwrap().with_cells([4, 4]).unwrap().on_side(side);
+    let lamp = Emitter::Isotropic(Isotropic::new(DVec3::new(0.3, 0.4, 0.5), 1000.0).unwrap());
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface("walls", box_shape, walls)
+        .surface("shelf", plate.into(), shelf)
+        .emitter("lamp", lamp)
+        .receiver(receiver("up", ReceiverSide::Front))
+        .receiver(receiver("down", ReceiverSide::Back));
+    scene.build().unwrap()
 }
 
 #[test]
@@ -59,11 +57,11 @@ fn a_tabulated_diffuser_is_a_lambertian_surface() {
     let tables = room(diffuser(0.7, 1.0, Energy::Refuse), diffuser(0.5, 1.0, Energy::Refuse));
     // Bilinear between nodes a degree apart, a cosine loses 2.5e-5 of its integral: the same albedo on both sides.
     let albedo = |surface: usize| match &tables.materials()[surface] {
-        Material::Tabulated(t) => t.albedo(true, DVec3::Z)[0],
+        Material::Tabulated(t) => albedo_of(t, true, DVec3::Z)[0],
         other => panic!("{other:?}"),
     };
     assert!((albedo(0) / 0.7 - 1.0).abs() < 3e-5 && (albedo(1) / 0.5 - 1.0).abs() < 3e-5);
-    let matt = |part| Material::Lambertian { reflectance: Reflectance::grey(part) };
+    let matt = |part| Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()));
     let formula = room(matt(albedo(0)), matt(albedo(1)));
     let replicates = 32;
     let a = run(&tables, Sequence::SobolOwen, 1 << 13, replicates, 1);
@@ -113,20 +111,17 @@ fn hits_per_photon_have_the_mean_that_the_albedo_gives() {
     for (seed, albedo) in [(1, 0.3), (2, 0.8), (3, 0.95)] {
         let bsdf = diffuser(albedo, 6.0, Energy::Refuse);
         let Material::Tabulated(t) = &bsdf else { unreachable!() };
-        let a = t.albedo(true, DVec3::Z)[0];
+        let a = albedo_of(t, true, DVec3::Z)[0];
         let ball = Shape::Sphere(Sphere::new(DVec3::new(0.1, 0.0, 0.2), 1.3).unwrap());
-        let lamp = Emitter::Isotropic(Isotropic { position: DVec3::new(0.4, -0.3, 0.1), flux_lm: 1.0 });
-        let scene = Scene::new(SceneParts {
-            surfaces: vec![surface("ball", ball, bsdf)],
-            emitters: vec![("lamp".into(), lamp)],
-            ..SceneParts::default()
-        })
-        .unwrap();
+        let lamp = Emitter::Isotropic(Isotropic::new(DVec3::new(0.4, -0.3, 0.1), 1.0).unwrap());
+        let mut scene = SceneBuilder::new();
+        scene.surface("ball", ball, bsdf).emitter("lamp", lamp);
+        let scene = scene.build().unwrap();
         let points = IndependentPoints::new(seed, 0);
         let (n, mut sum) = (1u64 << 17, 0.0);
         for index in 0..n {
             let mut c = Coordinates::new(&points, index, true);
-            let (emitter, emission) = scene.emitters.emit(&mut c);
+            let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut c).unwrap();
             let (mut sink, mut exceptions) = (Hits(0), Exceptions::default());
             let start = scene.start(emitter);
             let end = walk(&scene, emission, start, Grey, &mut c, &mut sink, &mut exceptions);
@@ -143,12 +138,12 @@ fn hits_per_photon_have_the_mean_that_the_albedo_gives() {
 fn sides_energy_and_remainder_are_what_the_scene_asks_for() {
     let one = |options: Options| Tabulated::new(&single(0.6, LobeSide::Front), &options).unwrap().0;
     let wi = DVec3::new(0.6, 0.0, 0.8);
-    let albedos = |t: &Tabulated| [true, false].map(|front| t.albedo(front, wi)[0] > 0.5);
+    let albedos = |t: &Tabulated| [true, false].map(|front| albedo_of(t, front, wi)[0] > 0.5);
     let with = |sides| one(Options { sides, ..Options::default() });
     assert_eq!(albedos(&with(Sides::Front)), [true, false]);
     assert_eq!(albedos(&with(Sides::Back)), [false, true]);
     assert_eq!(albedos(&with(Sides::Both)), [true, true]);
-    assert!(!with(Sides::Both).transmits(true) && !with(Sides::Both).is_coloured());
+    assert!(!caustix::surface::Model::is_coloured(&with(Sides::Both)));
     assert!(with(Sides::Both).with_reference(Reference::Along(DVec3::ZERO)).is_err());
     let bad = Options { rotation_deg: f64::NAN, ..Options::default() };
     assert!(Tabulated::new(&single(0.6, LobeSide::Both), &bad).is_err());
@@ -185,7 +180,7 @@ fn two_lobes_that_exceed_one_together_are_scaled_together() {
         let (t, warnings) = Tabulated::new(&table, &options).unwrap();
         assert!(warnings[0].found().ends_with(above), "{}", warnings[0]);
         for theta in 0..90 {
-            let albedo = t.albedo(true, crate::support::tables::incidence(f64::from(theta), 0.0))[0];
+            let albedo = albedo_of(&t, true, crate::support::tables::incidence(f64::from(theta), 0.0))[0];
             assert!(albedo <= 1.0 + 1e-6 && albedo > 0.8, "{theta}: {albedo}");
         }
     }
@@ -218,7 +213,7 @@ fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
                 other => panic!("{other:?}"),
             }
         }
-        let rest = 1.0 - t.albedo(true, wi)[0];
+        let rest = 1.0 - albedo_of(&t, true, wi)[0];
         let z = (specular / n as f64 - rest) / (rest * (1.0 - rest) / n as f64).sqrt();
         assert!(z_test(z) > SIGNIFICANCE, "{specular} of {n}, {rest}");
     }
@@ -266,7 +261,7 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
 /// counted, the rest leaves. Both parts by the midpoint rule over the hemisphere, in the surface's own angles.
 #[test]
 fn light_below_the_horizon_is_absorbed_and_counted() {
-    use caustix::emitter::collimated::{Collimated, CrossSection};
+    use caustix::emitter::{AimFrame, Beam, BeamSection};
     use caustix::scattering::{Frame, Quantity};
     let angles = [vec![70.0], vec![0.0], steps(0.0, 60.0, 10.0), steps(0.0, 360.0, 30.0)];
     let data = lobe((Quantity::Reflection, Frame::Specular), angles, 1, |_, _, _, polar, _| {
@@ -284,24 +279,20 @@ fn light_below_the_horizon_is_absorbed_and_counted() {
             .map(|j| {
                 let wo =
                     crate::support::tables::incidence(theta, (f64::from(j) + 0.5) * 360.0 / f64::from(n));
-                t.eval(true, wi, wo)[0]
+                crate::support::local::eval(t, true, wi, wo)[0]
             })
             .sum();
         above += ring * (theta * degree).sin() * (theta * degree).cos();
     }
     above *= 90.0 * 360.0 * degree * degree / f64::from(n * n);
-    let below = t.albedo(true, wi)[0] - above;
+    let below = albedo_of(t, true, wi)[0] - above;
     assert!(below > 0.03 && above > 0.1, "{below} {above}");
-    let across = DVec3::Z.cross(wi).normalize() * 0.1;
-    let section = CrossSection::Disc(across, wi.cross(across));
-    let beam = Collimated { centre: 4.0 * wi, direction: -wi, section, flux_lm: 100.0 };
+    let frame = AimFrame::new(-wi, Some(DVec3::Z)).unwrap();
+    let beam = Beam::new(4.0 * wi, frame, BeamSection::Disc { radius: 0.1 }, 100.0).unwrap();
     let plate = Rectangle::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::X * 4.0, DVec3::Y * 4.0).unwrap();
-    let scene = Scene::new(SceneParts {
-        surfaces: vec![surface("plate", Shape::Rectangle(plate), bsdf)],
-        emitters: vec![("beam".into(), Emitter::Collimated(beam))],
-        ..SceneParts::default()
-    })
-    .unwrap();
+    let mut scene = SceneBuilder::new();
+    scene.surface("plate", Shape::Rectangle(plate), bsdf).emitter("beam", Emitter::Beam(beam));
+    let scene = scene.build().unwrap();
     let outcome = run(&scene, Sequence::Independent, 1 << 18, 4, 5);
     let photons = outcome.photons as f64;
     for (count, part) in [(outcome.census.exceptions.below_horizon, below), (outcome.ledger.escaped, above)] {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::files::obj::{ObjOptions, parse_obj, read_obj};
+use caustix::files::obj::{ObjOptions, parse_obj};
 use caustix::geometry::{Mesh, Smoothing, Transform};
 use glam::DVec3;
 
@@ -158,10 +158,4 @@ fn truncated_and_mutated_files_give_a_mesh_or_a_diagnostic() {
     }
     println!("{read} read, {refused} refused");
     assert!(read > 3000 && refused > 3000, "{read} {refused}");
-}
-
-#[test]
-fn a_missing_file_is_named() {
-    let d = read_obj(Path::new("/nowhere/at/all.obj"), &ObjOptions::default()).unwrap_err();
-    assert_eq!((d.kind(), d.file()), (Kind::Io, Some("/nowhere/at/all.obj")));
 }

@@ -12,15 +12,9 @@ use crate::meshes::{Random, icosphere, named};
 fn field(cells: u32) -> Shape {
     let octaves = [(1.0, 0.30), (0.45, 0.148), (0.12, 0.073)];
     let octaves = octaves.map(|(amplitude, wavelength_m)| Octave { amplitude, wavelength_m });
-    let field = Heightfield {
-        min: DVec2::splat(-1.0),
-        max: DVec2::splat(1.0),
-        z_m: 0.5,
-        cells: [cells, cells],
-        formula: Formula::Noise(Noise::new(5, octaves.to_vec(), 0.05).unwrap()),
-        facing: Facing::Up,
-        smooth: true,
-    };
+    let formula = Formula::Noise(Noise::new(5, octaves.to_vec(), 0.05).unwrap());
+    let field =
+        Heightfield::new(DVec3::new(-1.0, -1.0, 0.5), DVec2::splat(2.0), [cells, cells], formula).unwrap();
     Shape::Mesh(field.mesh().unwrap())
 }
 

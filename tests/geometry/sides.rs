@@ -71,20 +71,11 @@ fn grazing_rays_enter_and_leave_a_sphere_or_miss_it() {
 fn an_open_interface_is_crossed_once_and_a_mirror_never() {
     // A wave surface as interface: straight through, aimed at its vertices and edges, is one crossing. Turned back by
     // reflection the ray must not meet the same place again.
-    let field = Heightfield {
-        min: DVec2::splat(-1.0),
-        max: DVec2::splat(1.0),
-        z_m: 0.0,
-        cells: [16, 16],
-        formula: Formula::Waves(vec![Wave {
-            amplitude_m: 0.01,
-            wavelength_m: 0.9,
-            direction_deg: 20.0,
-            phase_deg: 0.0,
-        }]),
-        facing: Facing::Up,
-        smooth: false,
-    };
+    let wave = Wave { amplitude_m: 0.01, wavelength_m: 0.9, direction_deg: 20.0, phase_deg: 0.0 };
+    let origin = DVec3::new(-1.0, -1.0, 0.0);
+    let field = Heightfield::new(origin, DVec2::splat(2.0), [16, 16], Formula::Waves(vec![wave]))
+        .unwrap()
+        .smooth(false);
     let mesh = field.mesh().unwrap();
     let g = Geometry::build(vec![named("water", Shape::Mesh(mesh.clone()))]).unwrap();
     (0..300_000u64).into_par_iter().for_each(|i| {

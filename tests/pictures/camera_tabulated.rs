@@ -3,18 +3,19 @@
 
 use std::f64::consts::PI;
 
-use caustix::emitter::{Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Surface};
 use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{Frame, Quantity, ScatterTable};
 use caustix::scene::camera::CameraSpec;
-use caustix::scene::{Scene, SceneParts};
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::owen::OwenPoints;
 use caustix::surface::tabulated::Options;
-use caustix::surface::{Event, Grey, Incidence, Material, Reference, Tabulated};
+use caustix::surface::{Event, Grey, Incidence, Leg, Material, Reference, Tabulated};
 use glam::DVec3;
 
 use crate::one_pixel::{assert_close, narrow, pixel};
+use crate::support::local;
+use crate::support::pictures::panel;
 use crate::support::tables::{incidence, lobe, steps};
 
 /// Reflects and transmits, unlike in azimuth; `strength` 1 scatters about 0.6 of the light.
@@ -74,8 +75,8 @@ fn the_value_is_what_photons_do() {
                 let phi = 2.0 * PI * (f64::from(j) + 0.5) / f64::from(columns);
                 let s = (1.0 - z * z).sqrt();
                 let wo = DVec3::new(s * phi.cos(), s * phi.sin(), z);
-                let f = bsdf.value(outward, wi, wo)[0] * wo.dot(outward).abs() * 4.0 * PI
-                    / f64::from(rows * columns);
+                let pdf = bsdf.pdf(outward, Leg::new(wi, outward), Leg::new(wo, outward));
+                let f = pdf * 4.0 * PI / f64::from(rows * columns);
                 let through = (wo.dot(outward) > 0.0) != front;
                 values[usize::from(through)][0] += f;
                 values[usize::from(through)][1] += f * probe(wo);
@@ -95,18 +96,13 @@ fn the_value_is_what_photons_do() {
 fn sheet_before_a_panel(strength: f64, specular_remainder: bool) -> (Scene, f64) {
     let options = Options { specular_remainder, ..Options::default() };
     let sheet = Tabulated::new(&table(strength), &options).unwrap().0;
-    let albedo = sheet.albedo(true, incidence(20.0, 0.0))[0];
+    let albedo = local::albedo(&sheet, true, incidence(20.0, 0.0))[0];
     let shape = Rectangle::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
-    let panel = Panel::new(DVec3::Z, DVec3::NEG_Z, DVec3::Y, [0.5; 2], PI * 0.25);
-    let parts = SceneParts {
-        surfaces: vec![(
-            Surface { name: "sheet".into(), shape: Shape::Rectangle(shape) },
-            Material::Tabulated(Box::new(sheet)),
-        )],
-        emitters: vec![("panel".into(), Emitter::Panel(panel))],
-        ..SceneParts::default()
-    };
-    (Scene::new(parts).unwrap(), albedo)
+    let mut scene = SceneBuilder::new();
+    scene
+        .surface("sheet", shape.into(), Material::Tabulated(Box::new(sheet)))
+        .emitter("panel", panel(DVec3::Z, DVec3::NEG_Z, DVec3::Y, [0.5; 2], PI * 0.25));
+    (scene.build().unwrap(), albedo)
 }
 
 #[test]
@@ -137,7 +133,8 @@ fn light_behind_a_sheet_is_scattered_to_the_eye_before_it() {
             let at = |k: i32| 0.5 * ((f64::from(k) + 0.5) / f64::from(n) - 0.5);
             let to = DVec3::new(at(k % n), at(k / n), 1.0);
             let wi = to.normalize();
-            bsdf.value(DVec3::Z, wi, wo)[0] * wi.z * wi.z / to.length_squared() * 0.25 / f64::from(n * n)
+            let f = bsdf.eval(DVec3::Z, Leg::new(wi, DVec3::Z), Leg::new(wo, DVec3::Z))[0];
+            f * wi.z * wi.z / to.length_squared() * 0.25 / f64::from(n * n)
         })
         .sum::<f64>();
     assert_close("L D E through a sheet", seen.direct, exact, 0.01);

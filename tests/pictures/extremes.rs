@@ -3,14 +3,14 @@
 use std::sync::atomic::AtomicBool;
 
 use caustix::error::Kind;
-use caustix::files::exr::{OwnedData, read_maps};
 use caustix::picture::camera::Film;
 use caustix::picture::{AnyPicture, Picture, trace_picture};
 use caustix::scene::Scene;
 use caustix::scene::camera::{Bandwidth, CameraSpec, Method};
-use caustix::surface::{Dielectric, Material, Reflectance};
+use caustix::surface::{Dielectric, Material, Mirror, Reflectance};
 use glam::DVec3;
 
+use crate::support::maps::{Samples, read_maps};
 use crate::support::pictures::{beam, grey, plan, rectangle, scene, sphere, unwatched};
 use crate::support::stranger::Stranger;
 
@@ -19,7 +19,7 @@ fn turned_beam(camera: CameraSpec) -> Scene {
     let mirror = rectangle("mirror", DVec3::new(-1.0, -1.0, 2.0), DVec3::new(2.0, 0.0, -2.0), DVec3::Y * 2.0);
     let plate = rectangle("plate", DVec3::new(-3.0, -3.0, -1.0), DVec3::X * 6.0, DVec3::Y * 6.0);
     let light = beam(DVec3::new(-2.0, 0.0, 1.0), DVec3::X, 0.5, 100.0);
-    let silver = Material::Mirror { reflectance: Reflectance::grey(1.0) };
+    let silver = Material::Mirror(Mirror::new(Reflectance::new(1.0).unwrap()));
     scene(vec![(mirror, silver), (plate, grey(0.5))], vec![light], Some(camera))
 }
 
@@ -111,8 +111,8 @@ fn an_eye_in_a_glass_ball_sees_the_caustic_below_it_brighter_by_the_square_of_th
     let bare = turned_beam(camera.clone());
     let mirror = rectangle("mirror", DVec3::new(-1.0, -1.0, 2.0), DVec3::new(2.0, 0.0, -2.0), DVec3::Y * 2.0);
     let plate = rectangle("plate", DVec3::new(-3.0, -3.0, -1.0), DVec3::X * 6.0, DVec3::Y * 6.0);
-    let silver = Material::Mirror { reflectance: Reflectance::grey(1.0) };
-    let glass = Material::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let silver = Material::Mirror(Mirror::new(Reflectance::new(1.0).unwrap()));
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let ball = (sphere("ball", eye, 0.3), glass);
     let light = beam(DVec3::new(-2.0, 0.0, 1.0), DVec3::X, 0.5, 100.0);
     let inside = scene(vec![(mirror, silver), (plate, grey(0.5)), ball], vec![light], Some(camera));
@@ -198,7 +198,7 @@ fn the_command_makes_a_picture_of_one_pixel_and_refuses_one_of_8192_by_8192_befo
     assert_eq!((maps.width, maps.height), (1, 1));
     // A lamp of 100 / 4 pi cd at 1 m over a plate that scatters a half.
     let exact = 100.0 / (4.0 * std::f64::consts::PI) * 0.5 / std::f64::consts::PI;
-    let (_, OwnedData::F32(y)) = maps.channels.iter().find(|(name, _)| name == "Y").unwrap() else {
+    let (_, Samples::F32(y)) = maps.channels.iter().find(|(name, _)| name == "Y").unwrap() else {
         panic!("Y")
     };
     assert!((f64::from(y[0]) / exact - 1.0).abs() < 1e-3, "{} {exact}", y[0]);

@@ -21,15 +21,14 @@ use caustix::error::Result;
 use caustix::picture::camera::splat;
 use caustix::picture::camera::splat::{Splat, SplatMoments, SplatSink};
 use caustix::picture::camera::{Film, Pass, Sums, View, render};
-use caustix::picture::gather::bandwidth;
-use caustix::picture::gather::density::{Choice, Density};
 use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::gather::{Choice, Density, bandwidth};
 use caustix::picture::photon_map::sink::scattering_surfaces;
 use caustix::picture::photon_map::{PhotonMap, PhotonStore};
 use caustix::run::Plan;
 use caustix::run::tracer::Tracer;
 use caustix::scene::Scene;
-use caustix::scene::camera::{Bandwidth, CameraSpec};
+use caustix::scene::camera::{Bandwidth, Camera};
 use caustix::surface::Rgb;
 use caustix::surface::reflectance::luminance;
 use caustix::tally::Receivers;
@@ -100,12 +99,12 @@ impl Sink<Rgb> for CausticOnly<'_, '_> {
 ///
 /// # Errors
 /// A camera that sees nothing.
-pub fn seen_directly(scene: &Scene, spec: &CameraSpec) -> Result<Vec<bool>> {
+pub fn seen_directly(scene: &Scene, spec: &Camera) -> Result<Vec<bool>> {
     let view = View::new(scene, spec, 0)?;
     let scatters = scattering_surfaces(scene);
     let at_once = |place: DVec2| {
-        let ray = view.pinhole().ray(place);
-        let hit = scene.geometry.nearest(ray.origin, ray.direction, &view.start(), &mut 0);
+        let ray = view.pinhole.ray(place);
+        let hit = scene.geometry.nearest(ray.origin, ray.direction, &view.start, &mut 0);
         hit.is_some_and(|hit| scatters[hit.surface.0 as usize])
     };
     let [columns, rows] = spec.pixels;
@@ -127,26 +126,23 @@ pub fn seen_directly(scene: &Scene, spec: &CameraSpec) -> Result<Vec<bool>> {
 ///
 /// # Errors
 /// Those of tracing; a camera that sees nothing or is too large.
-pub fn splatted(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Reference> {
+pub fn splatted(scene: &Scene, spec: &Camera, plan: &Plan) -> Result<Reference> {
     let mut splat = Splat::<3>::new(scene, spec)?;
     let mut moments = SplatMoments::<3>::new(spec.pixels[0] as usize * spec.pixels[1] as usize);
     let nobody = Receivers::new(&scene.geometry, &[]);
     let scatters = scattering_surfaces(scene);
-    for replicate in 0..plan.replicates {
-        let n = plan.photons_per_replicate;
-        let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, n);
+    for replicate in 0..plan.replicates() {
+        let n = plan.photons_per_replicate();
+        let mut tracer = Tracer::new(scene, plan.algorithm(), plan.seed(), replicate, n);
         let sink = || CausticOnly { splat: splat.sink(nobody.sink()), scatters: &scatters, scattered: false };
         tracer.trace_into(n, Rgb::WHITE, sink, &AtomicBool::new(false), &|_| {})?;
         splat.close(&mut moments, true);
     }
     let photon_lm = scene.emitters.flux_lm() / plan.photons() as f64;
-    let r = f64::from(plan.replicates);
-    let sums = moments.sum.iter().map(|sum| luminance(*sum));
-    // R s^2 of the R partial sums.
-    let error = |y: f64, square: f64| (r / (r - 1.0) * (square - y * y / r).max(0.0)).sqrt() * photon_lm;
+    let error = |pixel| moments.variance(pixel, plan.replicates()).sqrt() * photon_lm;
     let mut reference = Reference {
-        standard_error: sums.clone().zip(&moments.square).map(|(y, square)| error(y, *square)).collect(),
-        value: sums.map(|y| y * photon_lm).collect(),
+        standard_error: (0..moments.sum.len()).map(error).collect(),
+        value: moments.sum.iter().map(|sum| luminance(*sum) * photon_lm).collect(),
         seen: seen_directly(scene, spec)?,
     };
     let view = View::new(scene, spec, 0)?;
@@ -161,12 +157,12 @@ pub fn splatted(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Referen
 ///
 /// # Errors
 /// Those of tracing; a camera that sees nothing or is too large.
-pub fn mapped(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Mapped> {
+pub fn mapped(scene: &Scene, spec: &Camera, plan: &Plan) -> Result<Mapped> {
     let mut store = PhotonStore::<3>::new(scene);
     let nobody = Receivers::new(&scene.geometry, &[]);
-    for replicate in 0..plan.replicates {
-        let n = plan.photons_per_replicate;
-        let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, n);
+    for replicate in 0..plan.replicates() {
+        let n = plan.photons_per_replicate();
+        let mut tracer = Tracer::new(scene, plan.algorithm(), plan.seed(), replicate, n);
         let sink = || store.sink(nobody.sink(), replicate);
         tracer.trace_into(n, Rgb::WHITE, sink, &AtomicBool::new(false), &|_| {})?;
     }
@@ -177,7 +173,7 @@ pub fn mapped(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Mapped> {
     let footprints = Arc::new(Footprints::new(&scene.geometry));
     let bandwidth = match spec.bandwidth {
         Bandwidth::Automatic if !map.photons().is_empty() => {
-            bandwidth::choose(&footprints, &map, spec.kernel, plan.replicates, 1.0).bandwidth()
+            bandwidth::choose(&footprints, &map, spec.kernel, plan.replicates(), 1.0).bandwidth()
         }
         named => named,
     };
@@ -188,11 +184,12 @@ pub fn mapped(scene: &Scene, spec: &CameraSpec, plan: &Plan) -> Result<Mapped> {
         Bandwidth::Automatic | Bandwidth::Nearest(_) => 0.0,
     };
     let map = map.rebuilt(radius_m);
-    let choice = Choice { bandwidth, ..Choice::of(spec, plan.replicates) };
-    let densities = [Density::on(footprints, &map, photon_lm, choice)];
+    let choice = Choice { bandwidth, kernel: spec.kernel, replicates: plan.replicates() };
+    let densities = [Density::new(footprints, &map, photon_lm, choice)];
     let mut sums = Sums::new(spec.pixels)?;
-    let view = View::new(scene, spec, plan.seed)?;
-    let pass = Pass::photons(&densities, 0..plan.replicates, true);
+    let view = View::new(scene, spec, plan.seed())?;
+    let replicates = 0..plan.replicates();
+    let pass = Pass { densities: &densities, replicates, finishes: true, emission: false, direct: false };
     render(&view, &pass, &mut sums, &AtomicBool::new(false), &|_| {})?;
     let Film { value, standard_error, bias, .. } = sums.finish();
     Ok(Mapped { value: value.into_iter().map(luminance).collect(), standard_error, bias, radius_m })

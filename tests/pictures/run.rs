@@ -3,16 +3,15 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use caustix::error::Kind;
-use caustix::files::scene_toml::description::{ReceiverEvents, ReceiverSide};
+use caustix::files::photon_map;
 use caustix::picture::camera::Film;
-use caustix::picture::photon_map::SavedMap;
 use caustix::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
-use caustix::run::{Outcome, Plan, StoppedBy, trace};
+use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use caustix::scene::Identity;
-use caustix::scene::camera::{Bandwidth, CameraSpec};
+use caustix::scene::camera::{Bandwidth, Camera, CameraSpec};
 use caustix::scene::receiver::ReceiverSpec;
-use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Dielectric, Material, Reflectance};
+use caustix::scene::{Scene, SceneBuilder};
+use caustix::surface::{Dielectric, Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
@@ -28,28 +27,20 @@ fn ball_on_table(wall: Material, memory_bytes: u64, with_camera: bool) -> Scene 
     };
     let table = rectangle("table", DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0);
     let back = rectangle("wall", DVec3::new(-1.0, 1.0, 0.0), DVec3::X * 2.0, DVec3::Z * 1.5);
-    let glass = Material::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
-    Scene::new(SceneParts {
-        surfaces: vec![
-            (table, grey(0.5)),
-            (back, wall),
-            (sphere("ball", DVec3::new(0.1, 0.2, 0.35), 0.25), glass),
-        ],
-        emitters: vec![
-            ("beam".into(), beam(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z, 0.3, 300.0)),
-            ("panel".into(), panel(DVec3::Z * 1.8, DVec3::NEG_Z, DVec3::X, [0.4, 0.4], 700.0)),
-        ],
-        receivers: vec![ReceiverSpec {
-            name: "table".into(),
-            surface: "table".into(),
-            cells: Some([8, 8]),
-            side: ReceiverSide::Front,
-            events: ReceiverEvents::All,
-        }],
-        camera: with_camera.then_some(camera),
-        ..SceneParts::default()
-    })
-    .unwrap()
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
+    let mut scene = SceneBuilder::new();
+    let ball = sphere("ball", DVec3::new(0.1, 0.2, 0.35), 0.25);
+    for (surface, material) in [(table, grey(0.5)), (back, wall), (ball, glass)] {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    scene
+        .emitter("beam", beam(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z, 0.3, 300.0))
+        .emitter("panel", panel(DVec3::Z * 1.8, DVec3::NEG_Z, DVec3::X, [0.4, 0.4], 700.0))
+        .receiver(ReceiverSpec::new("table", "table").unwrap().with_cells([8, 8]).unwrap());
+    if with_camera {
+        scene.camera(Camera::new(camera).unwrap());
+    }
+    scene.build().unwrap()
 }
 
 const ROOM: u64 = 1 << 30;
@@ -78,8 +69,8 @@ fn receivers_and_ledger_are_those_of_a_run_without_a_camera() {
         let without = trace(&bare, &plan, &AtomicBool::new(false), &|_| {}).unwrap();
         let (with, picture) = pictured(&ball_on_table(grey(0.4), memory, true), &plan, false);
         assert_eq!((with.photons, &with.ledger), (without.photons, &without.ledger));
-        assert_eq!(with.cells, without.cells);
-        assert_eq!(with.accounts, without.accounts);
+        assert_eq!(with.cells(), without.cells());
+        assert_eq!(with.accounts(), without.accounts());
         assert_eq!(with.census.dimension_histogram, without.census.dimension_histogram);
         assert_eq!((picture.summary.photons, picture.summary.replicates), (plan.photons(), replicates));
         assert!((picture.summary.passes > 1) == (memory < ROOM), "{:?}", picture.summary);
@@ -101,7 +92,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
 
 #[test]
 fn colour_takes_three_channels_and_its_luminance_is_that_of_the_weights() {
-    let red = Material::Lambertian { reflectance: Reflectance::rgb([0.9, 0.1, 0.1]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.9, 0.1, 0.1]).unwrap()));
     let scene = ball_on_table(red, ROOM, true);
     let plan = plan(1 << 14, 2);
     let (_, picture) = trace_picture(&scene, &plan, true, unwatched(&AtomicBool::new(false))).unwrap();
@@ -198,6 +189,13 @@ fn an_interrupted_run_leaves_the_picture_of_what_was_traced() {
     assert!((sum / expected - 1.0).abs() < 0.02, "{sum} {expected}");
 }
 
+/// Another camera.
+fn change(scene: &mut Scene, how: impl FnOnce(&mut CameraSpec)) {
+    let mut spec = CameraSpec::clone(scene.camera.as_ref().unwrap());
+    how(&mut spec);
+    scene.camera = Some(Camera::new(spec).unwrap());
+}
+
 /// A run whose camera is interrupted in its `pass`th pass, on one thread.
 fn interrupted_in_pass(pass: u32, memory: u64, plan: &Plan) -> (Outcome, Picture<1>) {
     let interrupt = AtomicBool::new(false);
@@ -213,8 +211,7 @@ fn interrupted_in_pass(pass: u32, memory: u64, plan: &Plan) -> (Outcome, Picture
     };
     let watch = Watch { interrupt: &interrupt, photons: &|_| {}, camera: &camera };
     let mut scene = ball_on_table(grey(0.4), memory, true);
-    let spec = scene.camera.as_mut().unwrap();
-    spec.pixels = [36, 20];
+    change(&mut scene, |spec| spec.pixels = [36, 20]);
     let (outcome, picture) = on_threads(1, || trace_picture(&scene, plan, false, watch)).unwrap();
     let AnyPicture::Grey(picture) = picture else { panic!("a grey scene") };
     (outcome, picture)
@@ -227,7 +224,7 @@ fn an_interrupt_while_the_camera_looks_costs_neither_receivers_nor_the_pixels_se
     let without = trace(&bare, &four, &AtomicBool::new(false), &|_| {}).unwrap();
     // In the only pass: all is traced, a tile is seen.
     let (outcome, picture) = interrupted_in_pass(1, ROOM, &four);
-    assert_eq!((outcome.stopped_by, &outcome.cells), (StoppedBy::Photons, &without.cells));
+    assert_eq!((outcome.stopped_by, outcome.cells()), (StoppedBy::Photons, without.cells()));
     assert_eq!(picture.summary.pixels_unseen, 36 * 20 - 256);
     assert_eq!(picture.film.standard_error.iter().filter(|e| e.is_finite()).count(), 256);
     // In one before the last: tracing ends, and what there is by then is seen wholly.
@@ -235,7 +232,7 @@ fn an_interrupt_while_the_camera_looks_costs_neither_receivers_nor_the_pixels_se
     assert_eq!((outcome.stopped_by, picture.summary.pixels_unseen), (StoppedBy::Interrupt, 0));
     assert!(outcome.replicates < 4 && picture.summary.passes >= 2, "{:?}", picture.summary);
     let mut scene = ball_on_table(grey(0.4), ROOM, true);
-    scene.camera.as_mut().unwrap().pixels = [36, 20];
+    change(&mut scene, |spec| spec.pixels = [36, 20]);
     let (sum, expected) = (total(&picture.film), total(&pictured(&scene, &four, false).1.film));
     assert!((sum / expected - 1.0).abs() < 0.02, "{sum} {expected}");
 }
@@ -264,7 +261,7 @@ fn a_bandwidth_chosen_in_the_first_of_many_passes_is_near_that_of_one() {
     let plan = plan(1 << 18, 8);
     let chosen = |memory| {
         let mut scene = ball_on_table(grey(0.4), memory, true);
-        scene.camera.as_mut().unwrap().bandwidth = Bandwidth::Automatic;
+        change(&mut scene, |spec| spec.bandwidth = Bandwidth::Automatic);
         let (_, picture) = pictured(&scene, &plan, false);
         (picture.summary.bandwidth.unwrap().map(|b| b.radius_m.unwrap()), picture.summary)
     };
@@ -290,19 +287,20 @@ fn a_saved_map_is_of_its_scene_and_settings_and_undamaged() {
     let scene = ball_on_table(grey(0.4), ROOM, true);
     let (_, fresh) = pictured(&scene, &plan, true);
     let mut bytes = Vec::new();
-    fresh.photons.unwrap().to_writer(&mut bytes).unwrap();
+    photon_map::write(&fresh.photons.unwrap(), &mut bytes).unwrap();
     let hash = hash_of_photons(&scene, &plan);
-    let read = SavedMap::<1>::from_bytes(&bytes, &hash).unwrap();
+    let read = photon_map::read::<1>(&bytes, &hash).unwrap();
     let again = picture_of_saved(&scene, &plan, read, unwatched(&AtomicBool::new(false))).unwrap();
     assert!(bits(&again.film) == bits(&fresh.film));
     for at in [0, 9, bytes.len() / 2, bytes.len() - 1] {
         let mut damaged = bytes.clone();
         damaged[at] ^= 4;
-        assert!(SavedMap::<1>::from_bytes(&damaged, &hash).is_err(), "byte {at}");
+        assert!(photon_map::read::<1>(&damaged, &hash).is_err(), "byte {at}");
     }
-    assert!(SavedMap::<1>::from_bytes(&bytes[..bytes.len() - 50], &hash).is_err());
-    let other = Plan { seed: 8, ..plan };
-    let refused = SavedMap::<1>::from_bytes(&bytes, &hash_of_photons(&scene, &other));
+    assert!(photon_map::read::<1>(&bytes[..bytes.len() - 50], &hash).is_err());
+    let settings = Settings { photons: Some(1 << 13), replicates: Some(2), seed: 8, ..Settings::default() };
+    let other = Plan::new(&settings).unwrap();
+    let refused = photon_map::read::<1>(&bytes, &hash_of_photons(&scene, &other));
     assert_eq!(refused.unwrap_err().kind(), Kind::Range);
 }
 

@@ -12,12 +12,12 @@ use caustix::run::Plan;
 use caustix::run::tracer::Tracer;
 use caustix::scene::Scene;
 use caustix::scene::camera::{CameraSpec, Filter, Method};
-use caustix::surface::{Dielectric, Grey, Material, Reflectance, Rgb};
+use caustix::surface::{Dielectric, Grey, Lambertian, Material, Reflectance, Rgb};
 use caustix::tally::Receivers;
 use glam::{DVec2, DVec3};
 
 use crate::support::judge::{SIGNIFICANCE, judge};
-use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, scene, unwatched};
+use crate::support::pictures::{beam, camera, grey, on_threads, panel, plan, rectangle, scene, unwatched};
 
 /// Splats alone, without what eye paths add: value by channel [cd/m2] and standard error of the luminance.
 struct Splatted<const C: usize> {
@@ -31,25 +31,23 @@ fn splatted<const C: usize, T: Channels<C>>(
     plan: &Plan,
     carried: T,
 ) -> Splatted<C> {
-    let mut splat = Splat::<C>::new(scene, spec).unwrap();
+    let mut splat = Splat::<C>::new(scene, &camera(spec.clone())).unwrap();
     let mut moments = SplatMoments::<C>::new((spec.pixels[0] * spec.pixels[1]) as usize);
     let receivers = Receivers::new(&scene.geometry, &scene.receivers);
-    for replicate in 0..plan.replicates {
-        let n = plan.photons_per_replicate;
-        let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, n);
+    for replicate in 0..plan.replicates() {
+        let n = plan.photons_per_replicate();
+        let mut tracer = Tracer::new(scene, plan.algorithm(), plan.seed(), replicate, n);
         let sink = || splat.sink(receivers.sink());
         tracer.trace_into(n, carried, sink, &AtomicBool::new(false), &|_| {}).unwrap();
         splat.close(&mut moments, true);
     }
     assert_eq!(splat.cut(), 0);
     let photon_lm = scene.emitters.flux_lm() / plan.photons() as f64;
-    let r = f64::from(plan.replicates);
-    let luminance = |v: &[f64; C]| if C == 3 { 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2] } else { v[0] };
-    let error = moments.sum.iter().zip(&moments.square).map(|(sum, square)| {
-        let y = luminance(sum);
-        (r / (r - 1.0) * (square - y * y / r)).sqrt() * photon_lm
-    });
-    Splatted { error: error.collect(), value: moments.sum.iter().map(|v| v.map(|v| v * photon_lm)).collect() }
+    let error = |pixel| moments.variance(pixel, plan.replicates()).sqrt() * photon_lm;
+    Splatted {
+        error: (0..moments.sum.len()).map(error).collect(),
+        value: moments.sum.iter().map(|v| v.map(|v| v * photon_lm)).collect(),
+    }
 }
 
 /// Fails unless the pixels agree with these luminances in their own standard errors, which must be small.
@@ -92,7 +90,7 @@ fn a_uniformly_lit_plate_is_as_bright_in_every_pixel_from_anywhere() {
 #[test]
 fn colour_is_that_of_the_plate() {
     let plate = rectangle("plate", DVec3::new(-5.0, -5.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
-    let red = Material::Lambertian { reflectance: Reflectance::rgb([0.8, 0.3, 0.05]) };
+    let red = Material::Lambertian(Lambertian::new(Reflectance::rgb([0.8, 0.3, 0.05]).unwrap()));
     let lit = scene(vec![(plate, red)], vec![beam(DVec3::Z * 9.0, DVec3::NEG_Z, 4.0, 640.0)], None);
     let spec = CameraSpec::pinhole(DVec3::Z * 2.0, DVec3::ZERO, DVec3::Y, 60.0, [3, 2]);
     let got = splatted(&lit, &spec, &plan(1 << 17, 8), Rgb::WHITE);
@@ -182,7 +180,7 @@ fn nothing_is_seen_through_glass_or_from_the_other_side() {
     assert_eq!(sum(&bare, DVec3::NEG_Z * 2.0), 0.0, "the dark side of a thin plate");
     // A small sheet of glass just before the pinhole; light passes beside it.
     let sheet = rectangle("sheet", DVec3::new(-1.5, -1.5, 1.9), DVec3::X * 3.0, DVec3::Y * 3.0);
-    let glass = Material::Dielectric(Dielectric { ior_outside: 1.0, ior: 1.5 });
+    let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let behind_glass = scene(vec![(plate(), grey(0.6)), (sheet, glass)], light(), None);
     assert_eq!(sum(&behind_glass, DVec3::Z * 2.0), 0.0);
 }

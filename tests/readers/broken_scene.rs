@@ -1,9 +1,8 @@
 //! A good scene in parts, and how a broken one is judged.
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::files::scene_toml::description::Description;
-use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
+use caustix::files::bytes::Base;
+use caustix::files::scene_toml::{SceneFile, parse};
 
 /// Where an error is expected in a text of the tests.
 pub const MARK: char = '«';
@@ -16,7 +15,7 @@ pub const PLATE: &str = "[[surface]]\nname = \"plate\"\ntype = \"rectangle\"\nma
 
 pub const RECEIVER: &str = "[[receiver]]\nsurface = \"plate\"\n";
 
-pub fn read(text: &str) -> Result<Description, Vec<Diagnostic>> {
+pub fn read(text: &str) -> Result<SceneFile, Vec<Diagnostic>> {
     parse(text, "test.toml", Base::Directory(".".into()))
 }
 
@@ -42,7 +41,8 @@ pub fn unmarked(text: &str) -> (String, Vec<(usize, usize)>) {
 #[track_caller]
 pub fn expect(text: &str, kind: Kind, found: &str, required: &str) -> Diagnostic {
     let (plain, places) = unmarked(text);
-    let errors = read(&plain).expect_err("the scene should be refused");
+    let built = read(&plain).and_then(SceneFile::build);
+    let errors = built.expect_err("the scene should be refused");
     assert_eq!(errors.len(), 1, "{errors:#?}");
     assert_eq!(places.len(), 1, "one mark");
     let error = errors[0].clone();

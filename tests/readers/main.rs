@@ -22,6 +22,7 @@ mod scattering_material;
 mod scattering_own;
 mod scattering_real;
 mod scattering_refined;
+mod scene_builder;
 mod scene_camera;
 mod scene_damaged;
 mod scene_errors;

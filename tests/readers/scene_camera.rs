@@ -1,10 +1,8 @@
 //! `[camera]` in scene files: every key, every default, every rule broken once; what a scene with a camera requires.
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
-use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
+use caustix::files::bytes::Base;
+use caustix::files::scene_toml::{SceneFile, parse};
 use caustix::scene::camera::{Bandwidth, CameraSpec, Exposure, Filter, Kernel, Method};
 use caustix::scene::requires::requirements;
 use glam::DVec3;
@@ -17,12 +15,13 @@ const SCENE: &str = "[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 2]\nfl
 const HEADER_LINE: usize = 14;
 const REQUIRED: &str = "position = [0, -3, 0]\nlook_at = [0, 0, 4]\nfov_deg = 40\npixels = [320, 200]\n";
 
-fn read(keys: &str) -> Result<Description, Vec<Diagnostic>> {
+fn read(keys: &str) -> Result<SceneFile, Vec<Diagnostic>> {
     parse(&format!("{SCENE}[camera]\n{keys}"), "test.toml", Base::Directory(".".into()))
 }
 
 fn spec(keys: &str) -> CameraSpec {
-    read(keys).unwrap_or_else(|e| panic!("{keys}: {e:#?}")).camera.unwrap().spec
+    let scene = read(keys).and_then(SceneFile::build).unwrap_or_else(|e| panic!("{keys}: {e:#?}"));
+    CameraSpec::clone(&scene.camera.unwrap())
 }
 
 #[test]
@@ -38,9 +37,8 @@ fn defaults_are_those_of_the_manual() {
     assert_eq!((camera.background_cd_m2, camera.exposure), ([0.0; 3], Exposure::Auto));
     assert_eq!((camera.filmic, camera.false_colour), (false, false));
     assert_eq!(camera.photon_memory_bytes, 2 << 30);
-    let description = read(REQUIRED).unwrap();
-    assert_eq!(description.camera.as_ref().unwrap().place.line, HEADER_LINE);
-    assert!(description.warnings.is_empty(), "a camera is reason enough: {:?}", description.warnings);
+    let file = read(REQUIRED).unwrap();
+    assert!(file.warnings().is_empty(), "a camera is reason enough: {:?}", file.warnings());
 }
 
 #[test]
@@ -148,20 +146,19 @@ fn every_rule_broken_once() {
 
 #[test]
 fn what_splatting_does_not_look_at_is_said() {
-    let description =
-        read(&format!("{REQUIRED}method = \"splat\"\nradius = 0.1\nkernel = \"flat\"\n")).unwrap();
-    let found: Vec<&str> = description.warnings.iter().map(Diagnostic::found).collect();
+    let file = read(&format!("{REQUIRED}method = \"splat\"\nradius = 0.1\nkernel = \"flat\"\n")).unwrap();
+    let found: Vec<&str> = file.warnings().iter().map(Diagnostic::found).collect();
     assert_eq!(found, ["radius with method = \"splat\"", "kernel with method = \"splat\""]);
 }
 
 #[test]
 fn a_scene_with_a_camera_requires_it_and_only_the_map_keeps_photons() {
-    let words = |keys: &str| requirements(&build(&read(keys).unwrap()).unwrap());
+    let words = |keys: &str| requirements(&read(keys).unwrap().build().unwrap());
     assert_eq!(words(REQUIRED), ["isotropic emission", "triangles", "camera", "stored photons"]);
     let splat = words(&format!("{REQUIRED}method = \"splat\"\n"));
     assert_eq!(splat, ["isotropic emission", "triangles", "camera"]);
-    let scene = build(&read(REQUIRED).unwrap()).unwrap();
-    assert_eq!(scene.camera, Some(spec(REQUIRED)));
+    let scene = read(REQUIRED).unwrap().build().unwrap();
+    assert_eq!(scene.camera.as_deref(), Some(&spec(REQUIRED)));
 }
 
 #[test]

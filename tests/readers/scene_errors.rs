@@ -1,7 +1,9 @@
 //! Every rule of the scene format but those of surfaces and receivers, broken once: place, kind, found, required and hint of the
 //! message.
 
+use caustix::emitter::Emits;
 use caustix::error::Kind;
+use caustix::scene::receiver::Cells;
 
 use crate::broken_scene::{
     BLACK, LAMP, LENGTH, METRES, PLATE, RECEIVER, emitter, expect, material, read, unmarked,
@@ -10,8 +12,8 @@ use crate::broken_scene::{
 #[test]
 fn the_scene_the_errors_are_put_into_is_good() {
     let scene = read(&format!("{LAMP}{BLACK}{PLATE}{RECEIVER}")).unwrap();
-    assert!(scene.warnings.is_empty());
-    assert_eq!(scene.receivers[0].cells, Some([256, 256]));
+    assert!(scene.warnings().is_empty());
+    assert_eq!(scene.build().unwrap().receivers[0].cells, Cells::Grid { nu: 256, nv: 256 });
 }
 
 #[test]
@@ -174,8 +176,9 @@ fn numbers() {
     expect(&isotropic("[0, 0, «\"up\"]", "1"), Kind::Syntax, "position[2] = \"up\"", METRES);
     // Integers, hexadecimals and separators are numbers too.
     let scene = read(&isotropic("[1, 0x10, -1_0.5e0]", "1_000")).unwrap();
-    assert_eq!(scene.emitters[0].position.value.to_array(), [1.0, 16.0, -10.5]);
-    assert_eq!(scene.emitters[0].flux_lm, Some(1000.0));
+    let scene = scene.build().unwrap();
+    assert_eq!(scene.emitters.as_slice()[0].position().to_array(), [1.0, 16.0, -10.5]);
+    assert_eq!(scene.emitters.flux_lm(), 1000.0);
     // A column counts characters, not bytes.
     let wide =
         "emitter = [{ name = \"größte λ\", type = \"isotropic\", position = [0, 0, «nan], flux_lm = 1 }]\n";
@@ -255,6 +258,24 @@ fn materials() {
         "a lambertian material without `reflectance`",
         &format!("reflectance = {reflectance}"),
     );
+    for bad in ["1.01", "-0.1", "nan"] {
+        expect(
+            &material(&format!(
+                "[material.black]\ntype = \"lambertian\"\nreflectance = 0.1\ntransmittance = «{bad}"
+            )),
+            Kind::Range,
+            &format!("transmittance = {bad}"),
+            "a transmittance from 0 to 1",
+        );
+    }
+    expect(
+        &material(
+            "[material.black]\ntype = \"lambertian\"\nreflectance = [0.2, 0.6, 0.2]\ntransmittance = «0.5",
+        ),
+        Kind::Range,
+        "transmittance = 0.5",
+        "a transmittance of at most 1 - reflectance in every channel",
+    );
     let error = expect(
         &material("[material.black]\ntype = \"mirror\"\n«reflectence = 0.5"),
         Kind::Unknown,
@@ -264,8 +285,8 @@ fn materials() {
     assert_eq!(error.advice(), Some("did you mean `reflectance`?"));
     let scene =
         read(&material("[material.black]\ntype = \"dielectric\"\nior = 1.33\nior_outside = 1.33")).unwrap();
-    assert_eq!(scene.warnings.len(), 1);
-    let warning = &scene.warnings[0];
+    assert_eq!(scene.warnings().len(), 1);
+    let warning = &scene.warnings()[0];
     assert_eq!((warning.line(), warning.column(), warning.kind()), (Some(7), Some(7), Kind::Range));
     assert_eq!(warning.found(), "ior = 1.33, the same as ior_outside");
 }
@@ -332,7 +353,7 @@ fn references_and_names() {
     );
     // Two receivers on one surface are fine if their names differ.
     let two = format!("{head}{PLATE}{RECEIVER}[[receiver]]\nname = \"direct\"\nsurface = \"plate\"\n");
-    assert_eq!(read(&two).unwrap().receivers.len(), 2);
+    assert_eq!(read(&two).unwrap().build().unwrap().receivers.len(), 2);
 }
 
 #[test]
@@ -342,9 +363,9 @@ fn run() {
         [("\"2^22\"", 1 << 22), ("4.5e6", 4_500_000), ("4_456_448", 4_456_448), ("0x10", 16)]
     {
         let scene = read(&format!("{good}photons = {text}\nseed = 7\nreplicates = 4\n")).unwrap();
-        assert_eq!(scene.run.photons.unwrap().value, photons);
-        assert_eq!(scene.run.seed.unwrap().value, 7);
-        assert_eq!(scene.run.replicates.unwrap().value, 4);
+        assert_eq!(scene.run.photons, Some(photons));
+        assert_eq!(scene.run.seed, Some(7));
+        assert_eq!(scene.run.replicates, Some(4));
     }
     let count = "a whole number from 1 to 2^48, written like 4_456_448, 4.5e6 or 2^22";
     for (bad, kind) in [

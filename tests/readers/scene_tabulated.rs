@@ -7,15 +7,13 @@ use std::f64::consts::PI;
 use std::fs;
 
 use caustix::error::{Diagnostic, Kind};
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::{Description, MaterialKind, TabulatedDescription};
-use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::{Base, sha256_hex};
+use caustix::files::bytes::Base;
+use caustix::files::scene_toml::{SceneFile, parse, read};
+use caustix::math::digest::sha256_hex;
 use caustix::run::{Estimate, Outcome};
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
-use caustix::surface::tabulated::{Energy, Sides};
 use glam::DVec3;
 use tempfile::TempDir;
 
@@ -62,17 +60,17 @@ impl Desk {
         Self { folder }
     }
 
-    fn describe(&self, text: &str) -> Description {
+    fn describe(&self, text: &str) -> SceneFile {
         parse(text, "test.toml", Base::Directory(self.folder.path().into()))
             .unwrap_or_else(|e| panic!("{e:?}\n{text}"))
     }
 
     fn scene(&self, text: &str) -> Scene {
-        build(&self.describe(text)).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+        self.describe(text).build().unwrap_or_else(|e| panic!("{e:?}\n{text}"))
     }
 
     fn refused(&self, text: &str) -> Vec<Diagnostic> {
-        build(&self.describe(text)).unwrap_err()
+        self.describe(text).build().unwrap_err()
     }
 }
 
@@ -102,27 +100,22 @@ fn absorbed(outcome: &Outcome, scene: &Scene, name: &str) -> Estimate {
     outcome.absorbed_lm(scene.geometry.surfaces().iter().position(|s| s.name == name).unwrap())
 }
 
-fn tabulated(description: &Description) -> &TabulatedDescription {
-    match &description.materials[0].kind {
-        MaterialKind::Tabulated(tabulated) => tabulated,
-        other => panic!("{other:?}"),
-    }
-}
-
 #[test]
 fn keys_and_their_defaults() {
     let desk = Desk::new(&[("t.scatter", even("reflection", "both", 0.5))]);
     let text = |keys: &str| LAMP.to_owned() + &material(keys) + &surface("plate", PLATE);
-    let plain = desk.describe(&text("file = \"t.scatter\""));
-    let t = tabulated(&plain);
-    assert_eq!((t.file.value.as_str(), t.sides, t.energy), ("t.scatter", Sides::Both, Energy::Refuse));
-    assert_eq!((t.rotation_deg, t.reference, t.specular_remainder), (0.0, None, false));
+    let material = |keys: &str| format!("{:?}", desk.scene(&text(keys)).materials()[0]);
+    let plain = material("file = \"t.scatter\"");
+    let defaults = "file = \"t.scatter\"\nside = \"both\"\nrotation_deg = 0\nreference = [3, 0, 0]\n\
+                    energy = \"refuse\"\nspecular_remainder = false";
+    assert_eq!(plain, material(defaults));
+    for other in
+        ["side = \"back\"", "rotation_deg = -30", "reference = [0, 0, 2]", "specular_remainder = true"]
+    {
+        assert_ne!(plain, material(&format!("file = \"t.scatter\"\n{other}")), "{other}");
+    }
     let all = "file = \"t.scatter\"\nside = \"back\"\nrotation_deg = -30\nreference = [0, 0, 2]\nenergy = \"scale\"\n\
                specular_remainder = true";
-    let full = desk.describe(&text(all));
-    let t = tabulated(&full);
-    assert_eq!((t.sides, t.energy, t.specular_remainder), (Sides::Back, Energy::Scale, true));
-    assert_eq!((t.rotation_deg, t.reference), (-30.0, Some(DVec3::Z)));
     let scene = desk.scene(&text(all));
     assert!(requirements(&scene).contains(&"tabulated scattering"));
     // The table is a file of the scene: its hash tells whether a result can be repeated.
@@ -176,7 +169,9 @@ fn mistakes_in_the_table_are_told_where_they_are() {
         ("bright.scatter", even("reflection", "both", 1.25)),
     ]);
     let text = |keys: &str| LAMP.to_owned() + &material(keys) + &surface("plate", PLATE);
-    let missing = desk.describe(&text("file = \"none.scatter\"")).missing_files();
+    let scene_file = desk.folder.path().join("scene.toml");
+    fs::write(&scene_file, text("file = \"none.scatter\"")).unwrap();
+    let missing = read(&scene_file).unwrap_err();
     assert_eq!((missing.len(), missing[0].line(), missing[0].column()), (1, Some(7), Some(8)));
     let errors = desk.refused(&text("file = \"bad.scatter\""));
     let path = desk.folder.path().join("bad.scatter").display().to_string();

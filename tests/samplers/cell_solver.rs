@@ -2,7 +2,8 @@
 //! Gauss-Legendre quadrature of the density, its root by Brent's method of the `roots` crate.
 
 use caustix::math::solve::Solver;
-use caustix::sample::cell::{Cell, Row};
+use caustix::sample::angles::Row;
+use caustix::sample::cell::Cell;
 use roots::{SimpleConvergency, find_root_brent};
 
 use crate::support::quadrature::Gauss;
@@ -49,7 +50,7 @@ fn roots_agree_with_brents_method_on_the_quadrature() {
         let (theta1, theta2) = (from.to_radians(), to.to_radians());
         let row = Row::new(theta1, theta2);
         for corners in CORNERS {
-            let cell = Cell::new(&row, 0, 0, corners).unwrap();
+            let cell = Cell::new(&row, corners).unwrap();
             for k in 1..100 {
                 let u = f64::from(k) / 100.0;
                 let f = |x: f64| distribution(&rule, theta1, row.width, corners, x) - u;

@@ -73,9 +73,7 @@ fn drawn(scene: &Scene, algorithm: Algorithm) -> (f64, f64) {
 #[test]
 fn the_account_by_events_is_what_photons_draw_in_every_variant() {
     let mixed = scene(MIXED);
-    let built_in = caustix::files::scene_toml::build::build(
-        &caustix::files::scene_toml::description::Description::built_in().unwrap(),
-    );
+    let built_in = caustix::files::scene_toml::built_in().unwrap().build();
     let built_in = built_in.unwrap();
     for (name, scene) in [("mixed", &mixed), ("built in", &built_in)] {
         let events = Events::count(scene);
@@ -102,9 +100,7 @@ fn the_account_by_events_is_what_photons_draw_in_every_variant() {
 #[test]
 fn equations_count_the_events_of_a_plain_scene() {
     // Two faces of a slab, then a black plate below: B_s = 2 for what passes at once, C = 2.
-    let built_in = caustix::files::scene_toml::build::build(
-        &caustix::files::scene_toml::description::Description::built_in().unwrap(),
-    );
+    let built_in = caustix::files::scene_toml::built_in().unwrap().build();
     let built_in = built_in.unwrap();
     let events = Events::count(&built_in);
     assert_eq!(events.scattered, 0.0);

@@ -213,7 +213,7 @@ fn a_run_s_errors_are_the_norms_of_its_own_counts() {
             let outcome = trace(&finer, &Plan::new(&settings).unwrap(), &quiet, &|_| {}).unwrap();
             let cell_m2 = 9.0 / 144.0;
             let lx: Vec<f64> =
-                outcome.cells[0].sum.iter().map(|n| *n as f64 * outcome.photon_lm / cell_m2).collect();
+                outcome.cells()[0].sum.iter().map(|n| *n as f64 * outcome.photon_lm / cell_m2).collect();
             let exact = reference.illuminance_lx();
             let sum =
                 |of: &dyn Fn(f64, f64) -> f64| lx.iter().zip(exact).map(|(a, b)| of(*a, *b)).sum::<f64>();

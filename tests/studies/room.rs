@@ -6,8 +6,6 @@
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::MaterialKind;
 use caustix::files::scene_toml::read;
 use caustix::geometry::Shape;
 use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure};
@@ -15,11 +13,11 @@ use caustix::report::room as report;
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
 use caustix::sequence::Sequence;
-use caustix::surface::Reflectance;
+use caustix::surface::{Lambertian, Material, Mirror, Reflectance};
 
 use crate::support::data::project;
 use crate::support::judge::{SIGNIFICANCE, assert_cells, assert_total, sidak, student_p};
-use crate::support::scenes::{describe, run, scene};
+use crate::support::scenes::{run, scene};
 
 const Y: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
@@ -129,7 +127,7 @@ fn grey_written_as_colour_is_grey() {
     let b = sphere("type = \"lambertian\"\nreflectance = [0.7, 0.7, 0.7]", "");
     assert!(!requirements(&b).contains(&"colour"));
     let outcomes = [&a, &b].map(|s| run(s, Sequence::SobolOwen, 1 << 12, 4, 6));
-    assert_eq!(outcomes[0].cells[0], outcomes[1].cells[0]);
+    assert_eq!(outcomes[0].cells()[0], outcomes[1].cells()[0]);
     assert_eq!(outcomes[0].ledger, outcomes[1].ledger);
 }
 
@@ -171,7 +169,7 @@ fn room(reflectance: &str, reflections: u32) -> Scene {
 #[test]
 fn the_room_is_closed_and_has_276_triangles() {
     let file = project().join("scenes/room.toml");
-    let scene = build(&read(file).unwrap()).unwrap();
+    let scene = read(file).unwrap().build().unwrap();
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     assert_eq!(scene.geometry.primitive_count(), 276);
     assert_eq!(scene.receivers.iter().map(|r| r.cells.len()).sum::<usize>(), 276);
@@ -194,7 +192,7 @@ fn the_room_is_closed_and_has_276_triangles() {
     for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
         let outcome = run(&scene, sequence, 1 << 16, 8, seed);
         assert_eq!(outcome.ledger.escaped, 0);
-        assert!(outcome.totals.sum.iter().sum::<u64>() > outcome.photons);
+        assert!(outcome.totals().sum.iter().sum::<u64>() > outcome.photons);
     }
 }
 
@@ -266,7 +264,7 @@ fn weights_and_roulette_agree_in_the_room() {
     for (r, receiver) in dim.receivers.iter().enumerate() {
         for cell in 0..receiver.cells.len() {
             let roulette = outcome.illuminance_lx(r, cell, receiver.area_m2(cell));
-            let hits = outcome.cells[r].sum[cell];
+            let hits = outcome.cells()[r].sum[cell];
             let values: Vec<f64> = sets.iter().map(|s| s[cell_of_all]).collect();
             cell_of_all += 1;
             if hits < 160 {
@@ -386,15 +384,17 @@ fn what_a_study_needs_is_asked_for() {
 #[test]
 fn colours_and_compare_are_read() {
     let with = |material: &str, rest: &str| {
-        describe(&format!(
-            "[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 0]\nflux_lm = 1\n[material.m]\n{material}\n{rest}"
+        scene(&format!(
+            "[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 3]\nflux_lm = 1\n[material.m]\n{material}\n\
+             [[surface]]\nname = \"ball\"\ntype = \"sphere\"\nmaterial = \"m\"\ncenter = [0, 0, 0]\nradius = 1\n{rest}"
         ))
     };
     let d = with("type = \"lambertian\"\nreflectance = [0.25, 0.5, 1]", "[compare]\nreflections = 0");
-    let expected = Reflectance::rgb([0.25, 0.5, 1.0]);
-    assert_eq!(d.materials[0].kind, MaterialKind::Lambertian { reflectance: expected });
-    assert_eq!(d.compare.unwrap().reflections, 0);
+    let wall = Lambertian::new(Reflectance::rgb([0.25, 0.5, 1.0]).unwrap());
+    assert!(matches!(d.materials()[0], Material::Lambertian(l) if l == wall));
+    assert_eq!(d.compared_reflections, Some(0));
     let d = with("type = \"mirror\"\nreflectance = [1, 0.5, 0]", "");
-    assert_eq!(d.materials[0].kind, MaterialKind::Mirror { reflectance: Reflectance::rgb([1.0, 0.5, 0.0]) });
-    assert_eq!(d.compare, None);
+    let mirror = Mirror::new(Reflectance::rgb([1.0, 0.5, 0.0]).unwrap());
+    assert!(matches!(d.materials()[0], Material::Mirror(m) if m == mirror));
+    assert_eq!(d.compared_reflections, None);
 }

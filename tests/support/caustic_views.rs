@@ -4,10 +4,9 @@
 
 use std::path::PathBuf;
 
-use caustix::error::{Diagnostic, Result};
+use caustix::error::{Diagnostic, Kind, Result};
+use caustix::files::bytes::Base;
 use caustix::files::scene_toml;
-use caustix::files::scene_toml::description::Description;
-use caustix::files::scene_toml::{build, source};
 use caustix::run::{Plan, Settings};
 use caustix::scene::Scene;
 use caustix::scene::camera::{CameraSpec, Filter};
@@ -23,15 +22,15 @@ pub struct View {
 }
 
 /// A file of the project.
-fn described(path: &str) -> std::result::Result<Description, Vec<Diagnostic>> {
-    scene_toml::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path))
+fn of_file(path: &str) -> std::result::Result<Scene, Vec<Diagnostic>> {
+    scene_toml::read_scene(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path))
 }
 
 type Built = std::result::Result<View, Vec<Diagnostic>>;
 
 /// The plate of the built-in scene from below the pane: all that is seen is light that came through it.
 pub fn wavy_glass(columns: u32) -> Built {
-    let scene = build::build(&described("scenes/wavy_glass_seen.toml")?)?;
+    let scene = of_file("scenes/wavy_glass_seen.toml")?;
     let (position, look_at) = (DVec3::new(0.0, -0.8, 0.7), DVec3::new(0.0, 0.1, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 50.0, [columns, columns * 3 / 4]);
     Ok(View { name: "wavy glass", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: false })
@@ -39,7 +38,7 @@ pub fn wavy_glass(columns: u32) -> Built {
 
 /// A glass ball in a beam of its own width, and the floor behind it.
 pub fn ball(columns: u32) -> Built {
-    let scene = build::build(&scene_toml::parse(BALL, "ball", source::Base::BuiltIn)?)?;
+    let scene = scene_toml::parse(BALL, "ball", Base::BuiltIn)?.build()?;
     let (position, look_at) = (DVec3::new(0.5, 0.0, 0.6), DVec3::new(0.22, 0.0, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 32.0, [columns, columns * 3 / 4]);
     Ok(View { name: "ball", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: true })
@@ -47,9 +46,15 @@ pub fn ball(columns: u32) -> Built {
 
 /// The metal ring as its own camera sees it, without the sky, whose mirror image on the table has no caustic.
 pub fn ring(columns: u32) -> Built {
-    let mut description = described("scenes/ring.toml")?;
-    description.emitters.truncate(1);
-    let scene = build::build(&description)?;
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let text = std::fs::read_to_string(folder.join("ring.toml"))
+        .map_err(|e| vec![Diagnostic::new(Kind::Io, e.to_string(), "scenes/ring.toml")])?;
+    // The first emitter is the sun; the second, which the materials follow, is the sky.
+    let sky = text.rfind("[[emitter]]").unwrap_or_default();
+    let rest = text[sky..].find("[material").unwrap_or_default();
+    let scene =
+        scene_toml::parse(&(text[..sky].to_owned() + &text[sky + rest..]), "ring", Base::Directory(folder))?;
+    let scene = scene.build()?;
     let (position, look_at) = (DVec3::new(0.02, -0.26, 0.22), DVec3::new(0.01, 0.0, 0.006));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 32.0, [columns, columns * 3 / 4]);
     Ok(View { name: "ring", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: false })
@@ -57,7 +62,7 @@ pub fn ring(columns: u32) -> Built {
 
 /// A pane of uneven glass in a beam narrower than it, and the floor below it, seen from below the pane.
 pub fn pane(columns: u32) -> Built {
-    let scene = build::build(&scene_toml::parse(PANE, "pane", source::Base::BuiltIn)?)?;
+    let scene = scene_toml::parse(PANE, "pane", Base::BuiltIn)?.build()?;
     let (position, look_at) = (DVec3::new(0.0, -0.24, 0.27), DVec3::new(0.0, 0.0, 0.0));
     let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 40.0, [columns, columns * 3 / 4]);
     Ok(View { name: "pane", scene, spec: CameraSpec { filter: Filter::Box, ..spec }, in_beam: true })

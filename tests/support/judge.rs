@@ -76,7 +76,7 @@ pub fn assert_cells(
 ) -> Verdict {
     let r = &scene.receivers[receiver];
     assert_eq!(r.cells.len(), exact_lx.len());
-    let moments = &outcome.cells[receiver];
+    let moments = &outcome.cells()[receiver];
     let enough = 10 * u64::from(outcome.replicates);
     let mut ts = Vec::new();
     for (cell, &exact) in exact_lx.iter().enumerate() {

@@ -2,14 +2,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use caustix::emitter::collimated::CrossSection;
-use caustix::emitter::{Collimated, Emitter, Panel};
+use caustix::emitter::{AimFrame, AreaLight, Beam, BeamSection, Emitter, Panel};
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface};
 use caustix::picture::Watch;
 use caustix::run::{Plan, Settings};
-use caustix::scene::camera::CameraSpec;
-use caustix::scene::{Scene, SceneParts};
-use caustix::surface::{Material, Reflectance};
+use caustix::scene::camera::{Camera, CameraSpec};
+use caustix::scene::{Scene, SceneBuilder};
+use caustix::surface::{Lambertian, Material, Reflectance};
 use glam::DVec3;
 
 pub fn rectangle(name: &str, corner: DVec3, u: DVec3, v: DVec3) -> Surface {
@@ -21,18 +20,19 @@ pub fn sphere(name: &str, centre: DVec3, radius: f64) -> Surface {
 }
 
 pub fn grey(part: f64) -> Material {
-    Material::Lambertian { reflectance: Reflectance::grey(part) }
+    Material::Lambertian(Lambertian::new(Reflectance::new(part).unwrap()))
 }
 
 /// A square beam of this half width.
 pub fn beam(centre: DVec3, direction: DVec3, half: f64, flux_lm: f64) -> Emitter {
-    let x = direction.any_orthonormal_vector();
-    let section = CrossSection::Rectangle(x * half, direction.cross(x) * half);
-    Emitter::Collimated(Collimated { centre, direction, section, flux_lm })
+    let frame = AimFrame::new(direction, Some(direction.cross(direction.any_orthonormal_vector()))).unwrap();
+    let section = BeamSection::Rectangle { width: 2.0 * half, height: 2.0 * half };
+    Emitter::Beam(Beam::new(centre, frame, section, flux_lm).unwrap())
 }
 
 pub fn panel(centre: DVec3, aim: DVec3, up: DVec3, size_m: [f64; 2], flux_lm: f64) -> Emitter {
-    Emitter::Panel(Panel::new(centre, aim, up, size_m, flux_lm))
+    let frame = AimFrame::new(aim, Some(up)).unwrap();
+    Emitter::Panel(AreaLight::new(centre, frame, Panel::new(size_m).unwrap(), flux_lm).unwrap())
 }
 
 pub fn scene(
@@ -40,8 +40,21 @@ pub fn scene(
     emitters: Vec<Emitter>,
     camera: Option<CameraSpec>,
 ) -> Scene {
-    let emitters = emitters.into_iter().enumerate().map(|(i, e)| (format!("lamp{i}"), e)).collect();
-    Scene::new(SceneParts { surfaces, emitters, camera, ..SceneParts::default() }).unwrap()
+    let mut scene = SceneBuilder::new();
+    for (surface, material) in surfaces {
+        scene.surface(surface.name, surface.shape, material);
+    }
+    for (i, emitter) in emitters.into_iter().enumerate() {
+        scene.emitter(format!("lamp{i}"), emitter);
+    }
+    if let Some(spec) = camera {
+        scene.camera(self::camera(spec));
+    }
+    scene.build().unwrap()
+}
+
+pub fn camera(spec: CameraSpec) -> Camera {
+    Camera::new(spec).unwrap()
 }
 
 pub fn plan(photons: u64, replicates: u32) -> Plan {

@@ -3,25 +3,23 @@
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use caustix::files::scene_toml::build::build;
-use caustix::files::scene_toml::description::Description;
+use caustix::error::Diagnostic;
+use caustix::files::bytes::Base;
 use caustix::files::scene_toml::parse;
-use caustix::files::scene_toml::source::Base;
 use caustix::run::{Algorithm, Outcome, Plan, Settings, trace};
 use caustix::scene::Scene;
 use caustix::sequence::Sequence;
 
 use super::data::project;
 
-/// A scene's text as a description; paths are relative to `scenes/`.
-pub fn describe(text: &str) -> Description {
-    parse(text, "test.toml", Base::Directory(project().join("scenes")))
-        .unwrap_or_else(|e| panic!("{e:?}\n{text}"))
-}
-
 /// A scene from its text; paths are relative to `scenes/`.
 pub fn scene(text: &str) -> Scene {
-    build(&describe(text)).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+    try_scene(text).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+}
+
+/// The same for a text that may be refused.
+pub fn try_scene(text: &str) -> Result<Scene, Vec<Diagnostic>> {
+    parse(text, "test.toml", Base::Directory(project().join("scenes")))?.build()
 }
 
 /// Every scene file of the project, by name.

@@ -9,12 +9,11 @@ mod words;
 mod xyz;
 pub mod zemax;
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf::words::{Words, decode};
+use crate::files::bytes::read_capped;
 use crate::scattering::ScatterTable;
 
 /// Larger files are refused; a MERL file has 35 MB.
@@ -98,9 +97,7 @@ impl Format {
 /// [`Kind::Io`] when it cannot be read, [`Kind::Limit`] beyond [`MAX_FILE_BYTES`], and those of [`parse`].
 pub fn read(path: impl AsRef<Path>) -> Result<ScatterTable> {
     let path = path.as_ref();
-    let io = |e: std::io::Error| Diagnostic::new(Kind::Io, e.to_string(), "a readable file").in_file(path);
-    let mut bytes = Vec::new();
-    File::open(path).map_err(io)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
+    let bytes = read_capped(path, MAX_FILE_BYTES).map_err(|d| d.in_file(path))?;
     parse(&bytes, &path.display().to_string())
 }
 

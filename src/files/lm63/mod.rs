@@ -21,13 +21,13 @@ mod tokens;
 pub use body::generation_type;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::bytes::read_capped;
 use crate::photometry::opening::sign;
 use crate::photometry::{LuminousOpening, Photometry, Tilt, TiltTable, flux};
 use body::Reader;
 use header::{Header, has_tilt_line, read_header};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
+use std::rc::Rc;
 use tokens::quoted;
 
 /// Larger files are refused: the largest real one has 1.3 MB.
@@ -36,14 +36,19 @@ pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// Deviation of the declared from the integrated flux that is worth a warning: real files agree within 0.25 %.
 const DECLARED_TOLERANCE: f64 = 3e-3;
 
+/// Gives the bytes of the tilt file of this name, which has no folder.
+pub(crate) type TiltFile<'a> = &'a mut dyn FnMut(&str) -> Result<Rc<[u8]>>;
+
 /// Reads a photometric file; a tilt file is looked for beside it.
 ///
 /// # Errors
 /// [`Kind::Io`] when it cannot be read, [`Kind::Limit`] beyond [`MAX_FILE_BYTES`], and those of [`parse`].
 pub fn read(path: impl AsRef<Path>) -> Result<Photometry> {
     let path = path.as_ref();
-    let bytes = read_bytes(path).map_err(|d| d.in_file(path))?;
-    parse_beside(&bytes, &path.display().to_string(), Some(path.parent().unwrap_or(Path::new("."))))
+    let bytes = read_capped(path, MAX_FILE_BYTES).map_err(|d| d.in_file(path))?;
+    parse_with(&bytes, &path.display().to_string(), &mut |tilt| {
+        Ok(read_capped(&path.with_file_name(tilt), MAX_FILE_BYTES)?.into())
+    })
 }
 
 /// Reads the bytes of a photometric file; `name` stands in messages. A tilt file is not looked for.
@@ -51,33 +56,29 @@ pub fn read(path: impl AsRef<Path>) -> Result<Photometry> {
 /// # Errors
 /// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Range`] or [`Kind::Limit`] with file, line and column.
 pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
-    parse_beside(bytes, name, None)
+    parse_with(bytes, name, &mut |_| {
+        Err(Diagnostic::new(Kind::Unavailable, "no folder to look in", "a file beside it"))
+    })
 }
 
-fn read_bytes(path: &Path) -> Result<Vec<u8>> {
-    let io = |e: std::io::Error| Diagnostic::new(Kind::Io, e.to_string(), "a readable file");
-    let mut bytes = Vec::new();
-    File::open(path).map_err(io)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
+/// The same where tilt files can be had.
+pub(crate) fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result<Photometry> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         let found = format!("more than {MAX_FILE_BYTES} bytes");
-        return Err(Diagnostic::new(Kind::Limit, found, format!("at most {MAX_FILE_BYTES} bytes")));
+        let d = Diagnostic::new(Kind::Limit, found, format!("at most {MAX_FILE_BYTES} bytes"));
+        return Err(d.in_file(name));
     }
-    Ok(bytes)
-}
-
-fn parse_beside(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Photometry> {
-    let text = decode::decode(bytes);
-    let mut photometry = parse_text(&text, folder).map_err(|d| d.in_file(name))?;
+    let mut photometry = parse_text(&decode::decode(bytes), tilt).map_err(|d| d.in_file(name))?;
     photometry.file = name.to_owned();
     photometry.warnings = photometry.warnings.into_iter().map(|d| d.in_file(name)).collect();
     Ok(photometry)
 }
 
-fn parse_text(text: &str, folder: Option<&Path>) -> Result<Photometry> {
+fn parse_text(text: &str, tilt_file: TiltFile<'_>) -> Result<Photometry> {
     let mut header = read_header(text)?;
     let mut reader = Reader::new(text, header.body);
     reader.warnings.append(&mut header.warnings);
-    let tilt = read_tilt(&header, &mut reader, folder)?;
+    let tilt = read_tilt(&header, &mut reader, tilt_file)?;
     let body = reader.body(header.revision)?;
     let fields = body.opening.map(|n| n.value);
     let (opening, defined) = LuminousOpening::from_fields(fields, body.feet, header.revision);
@@ -110,7 +111,7 @@ fn parse_text(text: &str, folder: Option<&Path>) -> Result<Photometry> {
     Ok(photometry)
 }
 
-fn read_tilt(header: &Header, reader: &mut Reader, folder: Option<&Path>) -> Result<Tilt> {
+fn read_tilt(header: &Header, reader: &mut Reader, tilt_file: TiltFile<'_>) -> Result<Tilt> {
     let (value, offset) = header.tilt;
     let mut words = value.split_whitespace();
     let first = words.next().unwrap_or("");
@@ -139,7 +140,7 @@ fn read_tilt(header: &Header, reader: &mut Reader, folder: Option<&Path>) -> Res
     } else {
         value
     };
-    match read_tilt_file(name, folder) {
+    match read_tilt_file(name, tilt_file) {
         Ok(table) => Ok(Tilt::File { name: name.to_owned(), table: Some(table) }),
         Err(d) => {
             let hint = format!("tilt factors are not applied anyway; {d}");
@@ -156,18 +157,13 @@ fn read_tilt(header: &Header, reader: &mut Reader, folder: Option<&Path>) -> Res
 }
 
 /// A tilt file beside the photometric file; folders in its name belong to another machine and are dropped.
-fn read_tilt_file(name: &str, folder: Option<&Path>) -> Result<TiltTable> {
-    let Some(folder) = folder else {
-        return Err(Diagnostic::new(Kind::Unavailable, "no folder to look in", "a file beside it"));
-    };
+fn read_tilt_file(name: &str, tilt_file: TiltFile<'_>) -> Result<TiltTable> {
     let base = name.rsplit(['/', '\\']).next().filter(|base| !["", ".", ".."].contains(base));
     let Some(base) = base else {
         return Err(Diagnostic::new(Kind::Missing, quoted(name), "the name of a file"));
     };
-    let path = folder.join(base);
-    let bytes = read_bytes(&path)?;
-    let text = decode::decode(&bytes);
-    Reader::new(&text, 0).tilt_table()
+    let bytes = tilt_file(base)?;
+    Reader::new(&decode::decode(&bytes), 0).tilt_table()
 }
 
 /// What stands behind the last candela value: another luminaire, surplus numbers, other text.

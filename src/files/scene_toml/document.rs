@@ -3,8 +3,8 @@
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-use crate::error::{Diagnostic, Kind};
-use crate::files::scene_toml::description::Place;
+use super::table::Placed;
+use crate::error::{Diagnostic, Kind, Place};
 
 /// Most errors that are kept for one file; those beyond it are counted.
 pub const MOST_ERRORS: usize = 100;
@@ -17,6 +17,7 @@ pub struct Document<'t> {
     errors: RefCell<Vec<Diagnostic>>,
     unkept: Cell<usize>,
     warnings: RefCell<Vec<Diagnostic>>,
+    files: RefCell<Vec<Placed<String>>>,
 }
 
 impl<'t> Document<'t> {
@@ -30,6 +31,7 @@ impl<'t> Document<'t> {
             errors: RefCell::default(),
             unkept: Cell::new(0),
             warnings: RefCell::default(),
+            files: RefCell::default(),
         }
     }
 
@@ -46,14 +48,17 @@ impl<'t> Document<'t> {
 
     /// The text there, cut to one line of at most 40 characters.
     pub fn excerpt(&self, span: Range<usize>) -> String {
-        const LONGEST: usize = 40;
-        let whole = self.text.get(span).unwrap_or_default();
-        let line = whole.lines().next().unwrap_or_default();
-        let mut cut: String = line.chars().take(LONGEST).collect();
-        if cut.len() < whole.trim_end().len() {
-            cut.push_str("...");
-        }
-        cut
+        cut(self.text.get(span).unwrap_or_default())
+    }
+
+    /// Keep the mention of a file.
+    pub(super) fn names(&self, file: &Placed<String>) {
+        self.files.borrow_mut().push(file.clone());
+    }
+
+    /// The files that are mentioned, in the order in which they were read.
+    pub(super) fn files(&self) -> Vec<Placed<String>> {
+        self.files.borrow().clone()
     }
 
     /// Keep an error.
@@ -101,4 +106,15 @@ impl<'t> Document<'t> {
         }
         Err(errors)
     }
+}
+
+/// The first line of a text, at most 40 characters of it.
+pub(super) fn cut(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let line = text.lines().next().unwrap_or_default();
+    let mut cut: String = line.chars().take(LONGEST).collect();
+    if cut.len() < text.trim_end().len() {
+        cut.push_str("...");
+    }
+    cut
 }

@@ -1,144 +1,145 @@
-//! `[[emitter]]`: photometric, isotropic, collimated, panel.
+//! `[[emitter]]`: photometric, isotropic, collimated, panel, disc.
 
 use glam::DVec3;
 
-use crate::emitter::colour::CCT_RANGE_K;
-use crate::error::Kind;
-use crate::files::scene_toml::description::{
-    BeamSection, ColourDescription, EmitterDescription, EmitterShape, Frame, Place, Placed,
+use super::loader::Make;
+use super::names::Names;
+use super::numbers::DIRECTION;
+use super::parts::EmitterPart;
+use super::table::Table;
+use crate::emitter::colour::{CCT_K, CHANNEL};
+use crate::emitter::{
+    AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emitter, FLUX, Isotropic, Panel, Photometric,
 };
-use crate::files::scene_toml::names::Names;
-use crate::files::scene_toml::toml_table::{Interval, Table};
-use crate::files::scene_toml::{COORDINATE, LENGTH, direction, orthogonal_part};
+use crate::error::{Diagnostic, Kind};
+use crate::geometry::{COORDINATE, LENGTH};
 
-const FLUX: Interval = Interval { low: 1e-9, high: 1e12, words: "a flux from 1e-9 to 1e12 lm" };
-
-const CHANNEL: Interval = Interval { low: 0.0, high: 1e9, words: "a part of light from 0 to 1e9" };
-const TEMPERATURE: Interval = Interval {
-    low: CCT_RANGE_K[0],
-    high: CCT_RANGE_K[1],
-    words: "a colour temperature from 1000 to 15000 K",
-};
-
-#[derive(Clone, Copy)]
-enum Type {
-    Photometric,
-    Isotropic,
-    Collimated,
-    Panel,
-}
-
-const TYPES: [(&str, Type); 4] = [
-    ("photometric", Type::Photometric),
-    ("isotropic", Type::Isotropic),
-    ("collimated", Type::Collimated),
-    ("panel", Type::Panel),
+/// The types with what messages call them.
+const TYPES: [(&str, &str); 5] = [
+    ("photometric", "a photometric [[emitter]]"),
+    ("isotropic", "an isotropic [[emitter]]"),
+    ("collimated", "a collimated [[emitter]]"),
+    ("panel", "a panel [[emitter]]"),
+    ("disc", "a disc [[emitter]]"),
 ];
 
-pub(crate) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterDescription> {
+pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterPart> {
     let place = table.place();
     let given = table.text("name");
     let name_place = given.as_ref().map_or(place, |n| n.place);
     let name = given.map_or_else(|| format!("emitter {}", index + 1), |n| n.value);
     names.insert(table.document(), &name, name_place, index);
 
-    let kind = table.word("type", &TYPES);
-    let kind = table.require("type", kind, "\"photometric\", \"isotropic\", \"collimated\" or \"panel\"")?;
-    table.call(match kind {
-        Type::Photometric => "a photometric [[emitter]]",
-        Type::Isotropic => "an isotropic [[emitter]]",
-        Type::Collimated => "a collimated [[emitter]]",
-        Type::Panel => "a panel [[emitter]]",
-    });
-
-    let position = table.vector("position", &COORDINATE);
-    let position = table.require("position", position, "[x, y, z] in metres");
+    let kind = table.word("type", &TYPES.map(|(word, _)| (word, word)));
+    let words = "\"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"";
+    let kind = table.require("type", kind, words)?;
+    table.call(TYPES.iter().find(|(word, _)| *word == kind)?.1);
+    let position = table.needed_vector("position", &COORDINATE, "[x, y, z] in metres");
     let flux_lm = table.number("flux_lm", &FLUX);
     let colour = read_colour(&mut table);
-    let (shape, frame) = match kind {
-        Type::Photometric => {
-            let file = table.path("file");
-            (file.map(|file| EmitterShape::Photometric { file }), read_frame(&mut table))
-        }
-        Type::Isotropic => {
-            table.require("flux_lm", flux_lm, FLUX.words);
-            (Some(EmitterShape::Isotropic), Some(Frame { aim: DVec3::NEG_Z, up: DVec3::Y }))
-        }
-        Type::Collimated => {
-            table.require("flux_lm", flux_lm, FLUX.words);
-            let section = read_section(&mut table);
-            (section.map(|section| EmitterShape::Collimated { section }), read_frame(&mut table))
-        }
-        Type::Panel => {
-            table.require("flux_lm", flux_lm, FLUX.words);
-            let size = table.numbers::<2>("size", &LENGTH);
-            let size = table.require("size", size, "[width, height] in metres");
-            (size.map(|[width, height]| EmitterShape::Panel { width, height }), read_frame(&mut table))
-        }
+    let make = if kind == "photometric" {
+        read_photometric(&mut table, position, flux_lm)
+    } else {
+        let flux_lm = table.require("flux_lm", flux_lm, FLUX.words);
+        let light = position.zip(flux_lm);
+        let emitter = match kind {
+            "isotropic" => {
+                light.and_then(|(p, lm)| table.accept(Isotropic::new(p, lm)).map(Emitter::Isotropic))
+            }
+            "collimated" => read_beam(&mut table, light),
+            "panel" => read_panel(&mut table, light),
+            _ => read_disc(&mut table, light),
+        };
+        emitter.map(|emitter| -> Make<Emitter> { Box::new(move |_| Ok(emitter)) })
     };
     table.finish();
-    Some(EmitterDescription {
-        name,
-        position: position?,
-        frame: frame?,
-        flux_lm,
-        colour,
-        shape: shape?,
-        place,
-    })
+    Some(EmitterPart { name, colour: colour?, make: make?, place })
 }
 
-/// `colour = [r, g, b]`, `cct_k = 3000`, or neither.
-fn read_colour(table: &mut Table<'_, '_>) -> Option<Placed<ColourDescription>> {
-    let rgb = table.numbers::<3>("colour", &CHANNEL);
-    let cct_k = table.number("cct_k", &TEMPERATURE);
-    let (rgb_place, cct_place) = (table.place_of("colour"), table.place_of("cct_k"));
-    if rgb_place.is_some() && cct_place.is_some() {
-        table.error("cct_k", Kind::Range, "either colour or cct_k, not both");
-        return None;
-    }
-    if rgb == Some([0.0; 3]) {
-        table.error("colour", Kind::Range, "a colour that is not black: flux_lm says how bright it is");
-        return None;
-    }
-    let placed = |value, place: Option<Place>| place.map(|place| Placed { value, place });
-    match (rgb, cct_k) {
-        (Some(rgb), _) => placed(ColourDescription::Rgb(rgb), rgb_place),
-        (None, Some(cct_k)) => placed(ColourDescription::Cct(cct_k), cct_place),
-        (None, None) => None,
-    }
+fn read_photometric(
+    table: &mut Table<'_, '_>,
+    position: Option<DVec3>,
+    flux_lm: Option<f64>,
+) -> Option<Make<Emitter>> {
+    let file = table.path("file");
+    let frame = read_frame(table)?;
+    let (file, position) = (file?, position?);
+    Some(Box::new(move |loader| {
+        let photometry = loader.photometry(&file)?;
+        let emitter = Photometric::new(&photometry, position, frame, flux_lm);
+        Ok(Emitter::Photometric(emitter.map_err(|e| Diagnostic::from(e).in_file(loader.path(&file)))?))
+    }))
 }
 
-/// `aim` and `up`, made orthogonal.
-fn read_frame(table: &mut Table<'_, '_>) -> Option<Frame> {
-    let aim = direction(table, "aim", Some(DVec3::NEG_Z));
-    let is_given = table.place_of("up").is_some();
-    let up = direction(table, "up", Some(DVec3::Y));
-    let (aim, up) = (aim?, up?);
-    if let Some(up) = orthogonal_part(up, aim) {
-        return Some(Frame { aim, up });
-    }
-    if is_given {
-        table.error("up", Kind::Range, "a direction that is not parallel to aim");
-        return None;
-    }
-    orthogonal_part(DVec3::X, aim).map(|up| Frame { aim, up })
-}
+/// Position (m) and flux (lm), where both are good.
+type Light = Option<(DVec3, f64)>;
 
-/// `radius`, or `size = [width, height]`.
-fn read_section(table: &mut Table<'_, '_>) -> Option<BeamSection> {
+/// A beam of `radius`, or `size = [width, height]`.
+fn read_beam(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
     let radius = table.number("radius", &LENGTH);
     let size = table.numbers::<2>("size", &LENGTH);
     match (table.place_of("radius").is_some(), table.place_of("size").is_some()) {
-        (true, true) => {
-            table.error("size", Kind::Range, "either radius or size, not both");
-            None
-        }
-        (true, false) => radius.map(|radius| BeamSection::Disc { radius }),
-        (false, true) => size.map(|[width, height]| BeamSection::Rectangle { width, height }),
+        (true, true) => table.error("size", Kind::Range, "either radius or size, not both"),
         (false, false) => {
             table.error("radius", Kind::Missing, "... for a disc, or size = [width, height], in metres");
+        }
+        _ => {}
+    }
+    let frame = read_frame(table)?;
+    let section = match (radius, size) {
+        (Some(radius), _) => BeamSection::Disc { radius },
+        (None, Some([width, height])) => BeamSection::Rectangle { width, height },
+        (None, None) => return None,
+    };
+    let (centre, flux_lm) = light?;
+    table.accept(Beam::new(centre, frame, section, flux_lm)).map(Emitter::Beam)
+}
+
+fn read_panel(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
+    let size = table.numbers::<2>("size", &LENGTH);
+    let size = table.require("size", size, "[width, height] in metres");
+    let frame = read_frame(table)?;
+    let ((centre, flux_lm), panel) = (light?, table.accept(Panel::new(size?))?);
+    table.accept(AreaLight::new(centre, frame, panel, flux_lm)).map(Emitter::Panel)
+}
+
+fn read_disc(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
+    let radius = table.number("radius", &LENGTH);
+    let radius = table.require("radius", radius, "... in metres");
+    let frame = read_frame(table)?;
+    let ((centre, flux_lm), disc) = (light?, table.accept(Disc::new(radius?))?);
+    table.accept(AreaLight::new(centre, frame, disc, flux_lm)).map(Emitter::Disc)
+}
+
+/// `colour = [r, g, b]`, `cct_k = 3000`, or neither.
+fn read_colour(table: &mut Table<'_, '_>) -> Option<Colour> {
+    let rgb = table.numbers::<3>("colour", &CHANNEL);
+    let cct_k = table.number("cct_k", &CCT_K);
+    match (table.place_of("colour"), table.place_of("cct_k")) {
+        (None, None) => Some(Colour::WHITE),
+        (Some(_), None) => table.accept(Colour::new(rgb?)),
+        (None, Some(place)) => {
+            let (colour, clipped) = table.accept(Colour::black_body(cct_k?))?;
+            if clipped {
+                let found = format!("cct_k = {}, a light more saturated than sRGB can show", cct_k?);
+                let required = "about 1900 K or more; its blue is taken as 0 instead of below";
+                table.document().warn_at(place, Kind::Range, found, required);
+            }
+            Some(colour)
+        }
+        (Some(_), Some(_)) => {
+            table.error("cct_k", Kind::Range, "either colour or cct_k, not both");
             None
         }
     }
+}
+
+/// `aim` and `up`.
+fn read_frame(table: &mut Table<'_, '_>) -> Option<AimFrame> {
+    let mut direction = |key| {
+        let vector = table.vector(key, &DIRECTION);
+        (vector.is_some() || table.place_of(key).is_none()).then_some(vector)
+    };
+    let (aim, up) = (direction("aim"), direction("up"));
+    table.accept(AimFrame::new(aim?.unwrap_or(DVec3::NEG_Z), up?))
 }

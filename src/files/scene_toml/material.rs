@@ -1,73 +1,86 @@
 //! `[material.NAME]`: dielectric, mirror, lambertian, absorber, tabulated.
 
-use crate::error::Kind;
-use crate::files::scene_toml::description::{MaterialDescription, MaterialKind, TabulatedDescription};
-use crate::files::scene_toml::toml_table::{Interval, Table};
-use crate::files::scene_toml::{ANGLE, direction};
-use crate::surface::Reflectance;
-use crate::surface::tabulated::{Energy, Sides};
+use glam::DVec3;
 
-const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
-const REFLECTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a reflectance from 0 to 1" };
+use super::loader::Make;
+use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
+use super::parts::MaterialPart;
+use super::table::Table;
+use crate::error::invalid::Interval;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::bsdf;
+use crate::geometry::{ANGLE, Shape};
+use crate::math::frame::unit;
+use crate::surface::tabulated::{Energy, Options, Sides};
+use crate::surface::{
+    Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated,
+    dielectric, diffuse_transmission, reflectance,
+};
 
-#[derive(Clone, Copy)]
-enum Type {
-    Dielectric,
-    Mirror,
-    Lambertian,
-    Absorber,
-    Tabulated,
+const IOR: Interval = interval(dielectric::RANGE, dielectric::REQUIRED);
+const REFLECTANCE: Interval = interval(reflectance::RANGE, reflectance::REQUIRED);
+const TRANSMITTANCE: Interval = interval(reflectance::RANGE, diffuse_transmission::REQUIRED);
+
+const fn interval([low, high]: [f64; 2], words: &'static str) -> Interval {
+    Interval { low, high, words }
 }
 
-const TYPES: [(&str, Type); 5] = [
-    ("dielectric", Type::Dielectric),
-    ("mirror", Type::Mirror),
-    ("lambertian", Type::Lambertian),
-    ("absorber", Type::Absorber),
-    ("tabulated", Type::Tabulated),
-];
+const TYPES: [&str; 5] = ["dielectric", "mirror", "lambertian", "absorber", "tabulated"];
 
 const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back), ("both", Sides::Both)];
 
 const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
 
-pub(crate) fn read(mut table: Table<'_, '_>, name: String) -> Option<MaterialDescription> {
+pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
     let place = table.place();
-    if table.is_unavailable("type", &["conductor"], &TYPES.map(|(word, _)| word)) {
+    if table.is_unavailable("type", &["conductor"], &TYPES) {
         return None;
     }
-    let kind = table.word("type", &TYPES);
+    let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
     let kind = table.require("type", kind, required)?;
-    let kind = match kind {
-        Type::Dielectric => read_dielectric(&mut table),
-        Type::Mirror => {
-            table.call("a mirror");
-            let reflectance = read_reflectance(&mut table);
-            Some(MaterialKind::Mirror { reflectance: reflectance.unwrap_or(Reflectance::grey(1.0)) })
-        }
-        Type::Lambertian => {
-            table.call("a lambertian material");
-            let reflectance = read_reflectance(&mut table);
-            let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
-            reflectance.map(|reflectance| MaterialKind::Lambertian { reflectance })
-        }
-        Type::Absorber => {
+    let mut reference = None;
+    let make = match kind {
+        "dielectric" => read_dielectric(&mut table).map(made),
+        "mirror" => read_mirror(&mut table).map(made),
+        "lambertian" => read_lambertian(&mut table).map(made),
+        "absorber" => {
             table.call("an absorber");
-            Some(MaterialKind::Absorber)
+            Some(made(Material::Absorber))
         }
-        Type::Tabulated => read_tabulated(&mut table),
+        _ => read_tabulated(&mut table, &mut reference),
     };
     table.finish();
-    Some(MaterialDescription { name, kind: kind?, place })
+    Some(MaterialPart { make: make?, reference, place })
 }
 
-/// A number, or `[r, g, b]`.
-fn read_reflectance(table: &mut Table<'_, '_>) -> Option<Reflectance> {
-    table.number_or_vector("reflectance", &REFLECTANCE).map(|rgb| Reflectance::rgb(rgb.to_array()))
+/// A material that needs no file.
+fn made(material: Material) -> Make<Material> {
+    Box::new(move |_| Ok(material))
 }
 
-fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
+    table.call("a mirror");
+    let rgb = table.number_or_vector("reflectance", &REFLECTANCE).unwrap_or(DVec3::ONE);
+    let reflectance = table.accept(Reflectance::rgb(rgb.to_array()))?;
+    Some(Material::Mirror(Mirror::new(reflectance)))
+}
+
+fn read_lambertian(table: &mut Table<'_, '_>) -> Option<Material> {
+    table.call("a lambertian material");
+    let reflectance = table.number_or_vector("reflectance", &REFLECTANCE);
+    let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+    let transmittance = table.number_or_vector("transmittance", &TRANSMITTANCE).unwrap_or(DVec3::ZERO);
+    let reflectance = reflectance?.to_array();
+    if transmittance == DVec3::ZERO {
+        let reflectance = table.accept(Reflectance::rgb(reflectance))?;
+        return Some(Material::Lambertian(Lambertian::new(reflectance)));
+    }
+    let sheet = table.accept(DiffuseTransmission::new(reflectance, transmittance.to_array()))?;
+    Some(Material::DiffuseTransmission(sheet))
+}
+
+fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Material> {
     table.call("a dielectric");
     let ior = table.number("ior", &IOR);
     let ior_outside = table.number("ior_outside", &IOR).unwrap_or(1.0);
@@ -77,26 +90,49 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
         let found = format!("ior = {ior}, the same as ior_outside");
         table.document().warn_at(place, Kind::Range, found, "two media that differ: light passes unchanged");
     }
-    Some(MaterialKind::Dielectric { ior, ior_outside })
+    table.accept(Dielectric::new(ior, ior_outside)).map(Material::Dielectric)
 }
 
-fn read_tabulated(table: &mut Table<'_, '_>) -> Option<MaterialKind> {
+/// What makes the table; `reference` is the direction that azimuths are counted from, where one is given.
+fn read_tabulated(table: &mut Table<'_, '_>, reference: &mut Option<DVec3>) -> Option<Make<Material>> {
     table.call("a tabulated material");
     let file = table.path("file");
     let sides = table.word("side", &SIDES).unwrap_or_default();
     let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
-    let reference = match table.place_of("reference") {
-        Some(_) => Some(direction(table, "reference", None)?),
-        None => None,
-    };
+    let along = table.vector("reference", &DIRECTION);
+    if along.is_some_and(|v| unit(v).is_none()) {
+        table.error("reference", Kind::Range, DIRECTION_REQUIRED);
+    }
+    *reference = along.and_then(unit);
     let energy = table.word("energy", &ENERGIES).unwrap_or_default();
     let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
-    Some(MaterialKind::Tabulated(TabulatedDescription {
-        file: file?,
-        sides,
-        rotation_deg,
-        reference,
-        energy,
-        specular_remainder,
+    let file = file?;
+    let options = Options { energy, sides, rotation_deg, specular_remainder, ..Options::default() };
+    Some(Box::new(move |loader| {
+        let name = loader.path(&file).display().to_string();
+        let table = bsdf::parse(&loader.bytes(&file)?, &name)?;
+        loader.warnings.extend(table.warnings.iter().cloned());
+        // The table is as it should be; that it is laid on a surface here is what the scene can change.
+        let (table, found) = Tabulated::new(&table, &options).map_err(|e| {
+            let found = format!("{} in \"{}\"", e.found(), file.value);
+            let refused = Diagnostic::new(e.kind(), found, e.required()).placed(Some(file.place));
+            let refused = refused.in_file(&loader.name);
+            e.advice().map_or_else(|| refused.clone(), |hint| refused.clone().hint(hint))
+        })?;
+        loader.warnings.extend(found.into_iter().map(|w| w.in_file(&name)));
+        Ok(Material::Tabulated(Box::new(table)))
     }))
+}
+
+/// A material on a surface: a table is told which direction its azimuths are counted from there.
+pub(super) fn laid_on(material: &Material, reference: Option<DVec3>, shape: &Shape) -> Result<Material> {
+    let Material::Tabulated(table) = material else { return Ok(material.clone()) };
+    let own = || match shape {
+        Shape::Rectangle(rectangle) => Reference::Along(rectangle.edge_u()),
+        Shape::Paraboloid(paraboloid) => Reference::Around(paraboloid.axis()),
+        Shape::Sphere(_) => Reference::Around(DVec3::Z),
+        Shape::Mesh(_) => Reference::Along(DVec3::X),
+    };
+    let reference = reference.map_or_else(own, Reference::Along);
+    Ok(Material::Tabulated(Box::new(table.with_reference(reference)?)))
 }

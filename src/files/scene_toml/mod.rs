@@ -1,78 +1,91 @@
-//! Reading a scene file: TOML text to a checked [`Description`], or every error at once.
+//! Scene files: TOML text to a [`Scene`], or every error at once.
 //!
-//! docs/SCENE.md is the manual of the format; the readers of its parts are the files of this folder.
+//! docs/SCENE.md is the manual of the format; the readers of its parts are the files of this folder. A part's reader gives its
+//! keys to the constructors of what it describes and adds the place to what they refuse. What needs another file is made by
+//! [`SceneFile::build`], when the text is known to be good.
 
-pub mod build;
 mod camera;
+mod canonical;
 pub mod count;
-pub mod description;
 pub mod document;
-pub mod source;
-pub mod suggest;
-pub mod toml_table;
-pub mod without_camera;
 mod emitter;
 mod heightfield;
+mod loader;
 mod material;
 mod names;
+mod numbers;
+mod parts;
 mod receiver;
+mod suggest;
 mod surface;
 mod syntax;
+mod table;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use glam::DVec3;
+use crate::error::{Diagnostic, Kind, Place};
+use crate::files::bytes::{Base, Files, read_capped};
+use crate::math::digest::sha256_hex;
+use crate::scene::{Identity, Scene, SceneBuilder};
+use document::Document;
+use loader::Loader;
+use parts::Parts;
+pub use parts::RunDefaults;
+use table::Table;
 
-pub use crate::files::scene_toml::camera::MOST_PIXELS as MOST_CAMERA_PIXELS;
-pub use crate::files::scene_toml::heightfield::MOST_CELLS as MOST_HEIGHTFIELD_CELLS;
+/// Largest scene file that is read: 16 MiB.
+const SCENE_LIMIT_BYTES: u64 = 16 << 20;
 
-use crate::error::{Diagnostic, Kind};
-use crate::files::scene_toml::description::{
-    CameraDescription, CompareDescription, Description, Place, Placed, RunDescription,
-};
-use crate::files::scene_toml::document::Document;
-use crate::files::scene_toml::names::Names;
-use crate::files::scene_toml::source::{Base, Source};
-use crate::files::scene_toml::toml_table::{Interval, Table};
+/// A scene file whose text is good; the files that it names have not been read.
+pub struct SceneFile {
+    /// What a run takes where nobody says otherwise.
+    pub run: RunDefaults,
+    text: String,
+    loader: Loader,
+    parts: Parts,
+}
 
-/// Most emitters, materials, surfaces or receivers of one scene, each.
-pub const MOST_PARTS: usize = 4096;
-
-/// Most replicates.
-pub const MOST_REPLICATES: u64 = 65_536;
-
-/// Most reflections of `[compare]`: M of them take 2 M + 4 coordinates, and 64 are a sequence's own.
-pub const MOST_COMPARED_REFLECTIONS: u64 = 30;
-
-const COORDINATE: Interval = Interval { low: -1e9, high: 1e9, words: "a number of metres from -1e9 to 1e9" };
-const LENGTH: Interval = Interval { low: 1e-9, high: 1e9, words: "a length from 1e-9 to 1e9 m" };
-const DIRECTION: Interval = Interval { low: -1e9, high: 1e9, words: "a number from -1e9 to 1e9" };
-const ANGLE: Interval = Interval { low: -1e6, high: 1e6, words: "an angle from -1e6 to 1e6 degrees" };
-
-/// Read a scene file of at most [`source::SCENE_LIMIT_BYTES`] and look for the files it names.
+/// Read a scene file of at most 16 MiB and look for the files it names.
 ///
 /// # Errors
 /// Every error of the file, in its order: syntax, unknown keys and words, missing keys, values out of range,
-/// names used twice or not at all, files that are not there. At most [`crate::files::scene_toml::document::MOST_ERRORS`], and
-/// one that counts the rest.
-pub fn read(path: impl AsRef<Path>) -> Result<Description, Vec<Diagnostic>> {
+/// names used twice or not at all, files that are not there. At most [`document::MOST_ERRORS`], and one that counts the rest.
+pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
     let path = path.as_ref();
     let name = path.display().to_string();
-    let bytes = source::read_capped(path, source::SCENE_LIMIT_BYTES).map_err(|e| vec![e.in_file(&name)])?;
+    let bytes = read_capped(path, SCENE_LIMIT_BYTES).map_err(|e| vec![e.in_file(&name)])?;
     let text = std::str::from_utf8(&bytes).map_err(|e| vec![not_utf8(&bytes, e.valid_up_to(), &name)])?;
     let directory = path.parent().map(PathBuf::from).unwrap_or_default();
-    let description = parse(text, &name, Base::Directory(directory))?;
-    let missing = description.missing_files();
-    if missing.is_empty() { Ok(description) } else { Err(missing) }
+    let file = parse(text, &name, Base::Directory(directory))?;
+    let missing: Vec<_> = file.parts.files.iter().filter_map(|f| file.loader.missing(f)).collect();
+    if missing.is_empty() { Ok(file) } else { Err(missing) }
+}
+
+/// The scene of a file.
+///
+/// # Errors
+/// Those of [`read`] and [`SceneFile::build`].
+pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, Vec<Diagnostic>> {
+    read(path)?.build()
+}
+
+/// The scene inside the program, `scenes/wavy_glass.toml`.
+///
+/// # Errors
+/// None, as the tests show; they are those of [`parse`].
+pub fn built_in() -> Result<SceneFile, Vec<Diagnostic>> {
+    let text = include_str!("../../../scenes/wavy_glass.toml");
+    parse(text, "wavy_glass.toml (built in)", Base::BuiltIn)
 }
 
 /// Read a scene from its text; no file is opened. `name` is for messages.
 ///
 /// # Errors
 /// As [`read`], but for the files that the scene names.
-pub fn parse(text: &str, name: &str, base: Base) -> Result<Description, Vec<Diagnostic>> {
-    if text.len() as u64 > source::SCENE_LIMIT_BYTES {
-        let limit = format!("{} MiB", source::SCENE_LIMIT_BYTES >> 20);
+pub fn parse(text: &str, name: &str, base: Base) -> Result<SceneFile, Vec<Diagnostic>> {
+    if text.len() as u64 > SCENE_LIMIT_BYTES {
+        let limit = format!("{} MiB", SCENE_LIMIT_BYTES >> 20);
         let found = format!("a scene of more than {limit}");
         return Err(vec![Diagnostic::new(Kind::Limit, found, format!("at most {limit}")).in_file(name)]);
     }
@@ -87,164 +100,81 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<Description, Vec<Diag
     };
     let parts = Parts::read(Table::new(&document, root.get_ref(), "a scene", Place { line: 1, column: 1 }));
     let warnings = document.finish()?;
-    Ok(Description {
-        source: Source::new(text, name, base),
-        emitters: parts.emitters.into_iter().flatten().collect(),
-        materials: parts.materials.into_iter().flatten().collect(),
-        surfaces: parts.surfaces.into_iter().flatten().collect(),
-        receivers: parts.receivers.into_iter().flatten().collect(),
-        camera: parts.camera,
-        compare: parts.compare,
-        run: parts.run,
-        warnings,
-    })
+    let loader = Loader { name: name.to_owned(), files: Files::new(base), warnings };
+    Ok(SceneFile { run: parts.run, text: text.to_owned(), loader, parts })
 }
 
-/// The parts of a scene; `None` stands for one with an error, so that indices stay those of the file.
-struct Parts {
-    emitters: Vec<Option<description::EmitterDescription>>,
-    materials: Vec<Option<description::MaterialDescription>>,
-    surfaces: Vec<Option<description::SurfaceDescription>>,
-    receivers: Vec<Option<description::ReceiverDescription>>,
-    camera: Option<CameraDescription>,
-    compare: Option<CompareDescription>,
-    run: RunDescription,
+impl std::fmt::Debug for SceneFile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SceneFile").field("name", &self.loader.name).finish_non_exhaustive()
+    }
 }
 
-impl Parts {
-    fn read(mut root: Table<'_, '_>) -> Self {
-        let document = root.document();
-        let start = root.place();
+impl SceneFile {
+    /// What is allowed but probably not meant, in the text alone.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.loader.warnings
+    }
 
-        let emitter_tables = parts_named(&mut root, "emitter");
-        if root.place_of("emitter").is_none() {
-            document.error_at(
-                start,
-                Kind::Missing,
-                "a scene without [[emitter]]",
-                "at least one [[emitter]]",
-            );
+    /// The scene, with the files that it names.
+    ///
+    /// # Errors
+    /// All that is wrong with it and its files, not only the first.
+    pub fn build(self) -> Result<Scene, Vec<Diagnostic>> {
+        let Self { text, mut loader, parts, .. } = self;
+        let mut scene = SceneBuilder::new();
+        let mut errors = Vec::new();
+        // An error without a place of its own gets that of the part of the scene it is about.
+        let placed = |place: Place, e: Diagnostic, name: &str| match e.file() {
+            Some(_) => e,
+            None => e.placed(Some(place)).in_file(name),
+        };
+        for part in parts.emitters.into_iter().flatten() {
+            match (part.make)(&mut loader) {
+                Ok(emitter) => _ = scene.at(part.place).coloured_emitter(part.name, emitter, part.colour),
+                Err(e) => errors.push(placed(part.place, e, &loader.name)),
+            }
         }
-        let mut names = Names::new("emitter");
-        let emitters = emitter_tables
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| emitter::read(table, index, &mut names))
-            .collect();
-
-        let material_tables = root
-            .table("material", "the materials")
-            .map(|t| t.named_tables("a [material.NAME]", MOST_PARTS, "a table [material.NAME]"))
-            .unwrap_or_default();
-        let mut material_names = Names::new("material");
         let mut materials = Vec::new();
-        for (index, (name, table)) in material_tables.into_iter().enumerate() {
-            material_names.insert(document, &name, table.place(), index);
-            materials.push(material::read(table, name));
+        for part in parts.materials.into_iter().flatten() {
+            let made = (part.make)(&mut loader).map_err(|e| errors.push(placed(part.place, e, &loader.name)));
+            materials.push(made.ok().map(|material| (material, part.reference)));
         }
-
-        let mut surface_names = Names::new("surface");
-        let surfaces: Vec<_> = parts_named(&mut root, "surface")
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| surface::read(table, index, &mut surface_names, &material_names))
-            .collect();
-        heightfield::check_total(document, &surfaces);
-
-        let mut names = Names::new("receiver");
-        let receivers: Vec<_> = parts_named(&mut root, "receiver")
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| receiver::read(table, index, &mut names, &surface_names, &surfaces))
-            .collect();
-        receiver::check_total(document, &receivers);
-        if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
-            let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
-            document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
+        for part in parts.surfaces.into_iter().flatten() {
+            let made = (part.shape)(&mut loader).and_then(|shape| {
+                // A material in error is reported already.
+                let Some((material, reference)) = &materials[part.material] else { return Ok(()) };
+                let material = material::laid_on(material, *reference, &shape)?;
+                scene.at(part.place).surface(part.name, shape, material);
+                Ok(())
+            });
+            errors.extend(made.err().map(|e| placed(part.place, e, &loader.name)));
         }
-        warn_unused(document, &material_names, &surfaces);
-
-        let camera = root.table("camera", "[camera]").and_then(camera::read);
-        let compare = root.table("compare", "[compare]").and_then(read_compare);
-        let run = root.table("run", "[run]").map(read_run).unwrap_or_default();
-        root.finish();
-        Self { emitters, materials, surfaces, receivers, camera, compare, run }
-    }
-}
-
-/// The tables `[[key]]` of the scene.
-fn parts_named<'t, 'd>(root: &mut Table<'t, 'd>, key: &'static str) -> Vec<Table<'t, 'd>> {
-    let what = format!("an [[{key}]]").replace("an [[s", "a [[s").replace("an [[r", "a [[r");
-    let required = format!("1 to {MOST_PARTS} tables headed [[{key}]] (two brackets)");
-    root.tables(key, &what, MOST_PARTS, &required).unwrap_or_default()
-}
-
-fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<description::SurfaceDescription>]) {
-    let used: Vec<usize> = surfaces.iter().flatten().map(|s| s.material.index).collect();
-    for (name, place, index) in names.in_order() {
-        if !used.contains(&index) {
-            let found = format!("the material `{name}`, which no surface has");
-            document.warn_at(place, Kind::Unknown, found, format!("a surface with material = \"{name}\""));
+        if !errors.is_empty() {
+            return Err(errors);
         }
+        for (receiver, place) in parts.receivers.into_iter().flatten() {
+            scene.at(place).receiver(receiver);
+        }
+        if let Some((camera, place)) = parts.camera {
+            scene.at(place).camera(camera);
+        }
+        if let Some(reflections) = parts.compared_reflections {
+            scene.compared_reflections(reflections);
+        }
+        let Loader { name, files, warnings } = loader;
+        let mut scene = scene
+            .build()
+            .map_err(|errors| errors.into_iter().map(|e| e.in_file(&name)).collect::<Vec<_>>())?;
+        let files = files.hashes();
+        let hash_of = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, hash)| hash.clone());
+        // Files that others name (tilt) are in the scene, too.
+        let contents: BTreeSet<&str> = files.iter().map(|(_, hash)| hash.as_str()).collect();
+        let light = sha256_hex(format!("{}{contents:?}", canonical::canonical(&text, &hash_of)).as_bytes());
+        scene.identity = Identity { name, sha256: sha256_hex(text.as_bytes()), text, files, light };
+        scene.warnings = warnings;
+        Ok(scene)
     }
-}
-
-/// `[compare]`: reflections.
-fn read_compare(mut table: Table<'_, '_>) -> Option<CompareDescription> {
-    let words = format!("a whole number from 0 to {MOST_COMPARED_REFLECTIONS}");
-    let reflections = table.integer("reflections", 0, MOST_COMPARED_REFLECTIONS, &words);
-    let reflections = table.require("reflections", reflections, &words);
-    table.finish();
-    reflections.map(|r| CompareDescription { reflections: r.value as u32 })
-}
-
-/// `[run]`: photons, seed, replicates.
-fn read_run(mut table: Table<'_, '_>) -> RunDescription {
-    let photons = table.count("photons");
-    let seed = table.integer("seed", 0, u64::MAX, "a whole number from 0 to 2^64 - 1");
-    let replicates = table.integer("replicates", 1, MOST_REPLICATES, "a whole number from 1 to 65536");
-    if let (Some(photons), Some(replicates)) = (photons, replicates)
-        && photons.value < replicates.value
-    {
-        table.error("replicates", Kind::Range, "at most as many replicates as photons");
-    }
-    table.finish();
-    let replicates = replicates.map(|r| Placed { value: r.value as u32, place: r.place });
-    RunDescription { photons, seed, replicates }
-}
-
-/// The unit vector along `v`; `None` for the zero vector.
-fn unit(v: DVec3) -> Option<DVec3> {
-    let largest = v.abs().max_element();
-    // Scaled first, so that neither a tiny nor a huge vector loses its length in the squares.
-    (largest > 0.0 && largest.is_finite()).then(|| {
-        let scaled = v / largest;
-        scaled / scaled.length()
-    })
-}
-
-/// The unit vector along the part of unit vector `v` that is orthogonal to unit vector `axis`; `None` if the
-/// angle between their lines is below 1e-9, where rounding would choose the direction.
-fn orthogonal_part(v: DVec3, axis: DVec3) -> Option<DVec3> {
-    let sine = v.cross(axis).length();
-    // Subtracted twice: the first remainder is orthogonal to rounding of v, the second to rounding of itself.
-    let once = unit(v - axis * v.dot(axis))?;
-    let part = unit(once - axis * once.dot(axis))?;
-    (sine >= 1e-9).then_some(part)
-}
-
-/// A required direction; the zero vector is an error.
-fn direction(table: &mut Table<'_, '_>, key: &'static str, default: Option<DVec3>) -> Option<DVec3> {
-    const REQUIRED: &str = "a direction [x, y, z] that is not zero";
-    let vector = table.vector(key, &DIRECTION);
-    if vector.is_none() && table.place_of(key).is_none() && default.is_some() {
-        return default;
-    }
-    let unit = unit(table.require(key, vector, REQUIRED)?.value);
-    if unit.is_none() {
-        table.error(key, Kind::Range, REQUIRED);
-    }
-    unit
 }
 
 fn not_utf8(bytes: &[u8], valid: usize, name: &str) -> Diagnostic {
@@ -252,6 +182,6 @@ fn not_utf8(bytes: &[u8], valid: usize, name: &str) -> Diagnostic {
     let place = Document::new(text, name).place(valid);
     let byte = bytes.get(valid).copied().unwrap_or_default();
     Diagnostic::new(Kind::Syntax, format!("the byte 0x{byte:02X}, which is not UTF-8"), "text in UTF-8")
-        .at(place.line, place.column)
+        .placed(Some(place))
         .in_file(name)
 }

@@ -2,14 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use crate::error::{Diagnostic, Kind};
-use crate::files::scene_toml::description::{Place, Placed, Reference};
-use crate::files::scene_toml::document::Document;
-use crate::files::scene_toml::suggest;
-use crate::files::scene_toml::toml_table::{Table, shown};
+use super::document::Document;
+use super::suggest;
+use super::table::{Placed, Table, shown};
+use crate::error::{Diagnostic, Kind, Place};
 
 /// Longest name, in characters.
 const LONGEST_NAME: usize = 100;
+
+/// A reference by name to a material or a surface.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Reference {
+    /// The name as written.
+    pub name: String,
+    /// Index of the part in the file.
+    pub index: usize,
+}
 
 /// Names with their places and indices; parts with an error keep theirs, so that a reference to one is no
 /// second error.
@@ -69,7 +77,7 @@ impl Names {
         let Placed { value: name, place } =
             table.require(key, text, &format!("the name of a {what}, in quotes"))?;
         if let Some((_, index)) = self.known.get(&name) {
-            return Some(Reference { name, index: *index, place });
+            return Some(Reference { name, index: *index });
         }
         let document = table.document();
         if document.is_full() {
@@ -90,10 +98,6 @@ impl Names {
             many => format!("one of the {many} {what}s of this scene"),
         };
         let found = format!("the unknown {what} `{}`", shown(name));
-        let error = Diagnostic::new(Kind::Unknown, found, required);
-        match suggest::nearest(name, &names) {
-            Some(near) => error.hint(format!("did you mean `{near}`?")),
-            None => error,
-        }
+        suggest::hinted(Diagnostic::new(Kind::Unknown, found, required), suggest::nearest(name, &names), '`')
     }
 }

@@ -8,8 +8,9 @@ use crate::error::Result;
 use crate::lab::certificate::{Draw, PointKind};
 use crate::run::Algorithm;
 use crate::run::tracer::{PointSet, UsePoints};
+use crate::sample::cell::GridPoint;
 use crate::sample::coordinates::{Coordinates, Purpose};
-use crate::sample::grid::{Grid, GridPoint};
+use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, Sequence};
 
@@ -116,7 +117,7 @@ impl<S: FnMut(&[Sampled]) -> bool> UsePoints for Run<'_, S> {
 mod tests {
     use super::*;
     use crate::emitter::photometric::grid_axes;
-    use crate::emitter::{Emitter, Emitters, Photometric};
+    use crate::emitter::{AimFrame, Emits, Emitter, Emitters, Photometric};
     use crate::files::lm63;
     use crate::sequence::owen::OwenPoints;
 
@@ -124,17 +125,18 @@ mod tests {
     fn draws_are_the_directions_of_photons() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/ies/wavy_glass.ies");
         let photometry = lm63::read(file).unwrap();
-        let (aim, up) = (DVec3::new(0.3, -0.7, -0.5), DVec3::new(0.2, 0.1, 1.0));
-        let axes = grid_axes(photometry.web.photometric_type, aim, up).unwrap();
-        let lamp = Photometric::new(&photometry, DVec3::ZERO, aim, up, None).unwrap();
-        let grid = lamp.grid().clone();
-        let emitters = Emitters::new(vec![Emitter::Photometric(Box::new(lamp))]).unwrap();
+        let up = DVec3::new(0.2, 0.1, 1.0);
+        let frame = AimFrame::new(DVec3::new(0.3, -0.7, -0.5), Some(up)).unwrap();
+        let axes = grid_axes(photometry.web.photometric_type, frame).unwrap();
+        let lamp = Photometric::new(&photometry, DVec3::ZERO, frame, None).unwrap();
+        let grid = lamp.table().unwrap().clone();
+        let emitters = Emitters::new(vec![Emitter::Photometric(lamp)]).unwrap();
         for name in ["qmc", "qmc:table", "qmc:next-point", "qmc-inverse", "qmc-inverse-reuse"] {
             let algorithm = Algorithm::parse(name).unwrap();
             let points = OwenPoints::new(7, 3);
             let mut photons = (0..).filter_map(|index| {
                 let mut c = Coordinates::new(&points, index, algorithm.variant.reuses());
-                let (_, emission) = emitters.emit_by(algorithm.sampling(), &mut c)?;
+                let (_, emission) = emitters.emit(algorithm.sampling(), &mut c)?;
                 Some((emission.direction, c.drawn()))
             });
             let mut compared = 0;

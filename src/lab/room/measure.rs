@@ -92,7 +92,7 @@ pub fn measure(
     let started = processor_time()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
     let carried = Fixed::white(reflections);
-    let traced = trace_range(scene, &points, 0..photons, carried, how, || tally.sink());
+    let traced = trace_range(scene, &scene.emitters, &points, 0..photons, carried, how, || tally.sink());
     if !traced.complete {
         let found = format!("an interrupt before {task} were traced");
         return Err(Diagnostic::new(Kind::Interrupted, found, "all of them for a result"));

@@ -4,7 +4,7 @@
 //! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
 //! integrals.
 
-use crate::emitter::Emitter;
+use crate::emitter::Emits;
 use crate::run::Algorithm;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
@@ -12,7 +12,7 @@ use crate::sample::method::{Rejection, Sampling};
 use crate::scene::Scene;
 use crate::sequence::Points;
 use crate::sequence::independent::IndependentPoints;
-use crate::surface::{Grey, Incidence, Material, Rgb, Throughput};
+use crate::surface::{Grey, Incidence, Kind, Rgb, Throughput};
 use crate::transport::census::Exceptions;
 use crate::transport::{Arrival, End, Sink, walk};
 
@@ -87,10 +87,7 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
     emitters
         .iter()
         .map(|emitter| {
-            let cells = match emitter {
-                Emitter::Photometric(e) => Some(e.grid()),
-                _ => None,
-            };
+            let cells = emitter.table();
             let chosen_cell = cells.is_some_and(|grid| !grid.choice().is_single());
             let own = |choices: [bool; 2]| {
                 let choices = choices.iter().filter(|c| **c).count() as f64;
@@ -103,7 +100,7 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
                 (Sampling::Rejection(_), Some(grid)) => {
                     own([chosen_emitter, false]) + 3.0 * grid.proposals_of_table()
                 }
-                _ => own([chosen_emitter, chosen_cell]) + emitter.continuous_coordinates(),
+                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.kind().coordinates),
             };
             emitter.flux_lm() / total * coordinates
         })
@@ -114,7 +111,9 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
     let mut sum = Events::default();
     for index in 0..PHOTONS {
         let mut chooser = Watched::new(Coordinates::new(points, index, true));
-        let (emitter, emission) = scene.emitters.emit(&mut chooser.inner);
+        let Some((emitter, emission)) = scene.emitters.emit(Sampling::default(), &mut chooser.inner) else {
+            continue;
+        };
         let mut sink = Arrivals { scene, events: Events::default() };
         let start = scene.start(emitter);
         let exceptions = &mut Exceptions::default();
@@ -129,9 +128,8 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
             End::Absorbed(surface) => {
                 // The last arrival was no scattering.
                 events.end = 2.0;
-                match scene.material(surface) {
-                    Material::Lambertian { .. } | Material::Tabulated(_) => events.scattered -= 1.0,
-                    Material::Dielectric(_) | Material::Mirror { .. } | Material::Absorber => {}
+                if scene.material(surface).scatters() {
+                    events.scattered -= 1.0;
                 }
             }
             End::Escaped | End::Killed => events.end = 1.0,
@@ -170,23 +168,17 @@ struct Arrivals<'s> {
 
 impl<T> Sink<T> for Arrivals<'_> {
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
-        match self.scene.material(arrival.hit.surface) {
-            Material::Dielectric(_) | Material::Mirror { .. } => self.events.specular += 1.0,
-            Material::Lambertian { .. } => self.events.scattered += 1.0,
-            Material::Tabulated(table) => {
+        let material = self.scene.material(arrival.hit.surface);
+        match material.kind() {
+            Kind::Specular => self.events.specular += 1.0,
+            Kind::Scattering => {
                 self.events.scattered += 1.0;
-                let sign = if arrival.hit.front { 1.0 } else { -1.0 };
-                let at = Incidence {
-                    direction: arrival.direction,
-                    facet: arrival.hit.normal * sign,
-                    smooth: arrival.hit.shading_normal * sign,
-                    front: arrival.hit.front,
-                };
-                let (cells, whole) = table.proposals(&at);
-                self.events.table_proposals[0] += cells;
-                self.events.table_proposals[1] += whole;
+                let proposals = material.proposals(&Incidence::of(arrival.hit, arrival.direction));
+                for (sum, proposals) in self.events.table_proposals.iter_mut().zip(proposals) {
+                    *sum += proposals;
+                }
             }
-            Material::Absorber => {}
+            Kind::Absorbing => {}
         }
     }
 }

@@ -53,10 +53,9 @@ impl<'s> Grids<'s> {
             return fail("no grids", "at least one number of cells a side");
         }
         let divide = |(k, receiver): (u32, &Receiver)| {
-            let &Receiver { surface, side, events, .. } = receiver;
-            let surface = scene.geometry.surfaces()[surface.0 as usize].name.clone();
-            let name = receiver.name.clone();
-            Receiver::new(&ReceiverSpec { name, surface, cells: Some([k, k]), side, events }, &scene.geometry)
+            let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize].name;
+            let spec = ReceiverSpec::new(&receiver.name, surface)?.with_cells([k, k])?;
+            Receiver::new(&spec.on_side(receiver.side).of_events(receiver.events), &scene.geometry)
         };
         let each = cells.iter().flat_map(|&k| divided.iter().map(move |r| (k, *r)));
         let left_out = |first: &&Receiver| {

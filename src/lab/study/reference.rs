@@ -7,15 +7,15 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use crate::emitter::{Emitter, WeightedEmitters};
+use crate::emitter::{Emits, Emitter};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::Sequence;
+use crate::surface::{Grey, Rgb};
 use crate::tally::Receivers;
-use crate::transport::parallel::How;
-use crate::transport::weighted::trace_weighted;
+use crate::transport::parallel::{How, trace_range};
 
 use super::cells::{Grids, areas_m2};
 use super::norms::{Errors, moments, nrms_of_mean};
@@ -70,7 +70,7 @@ impl ReferencePlan {
 
 /// Emission map of the reference of a scene, in words: only tables have two.
 pub fn emission_map(scene: &Scene) -> &'static str {
-    let is_table = |e: &Emitter| matches!(e, Emitter::Photometric(_));
+    let is_table = |e: &Emitter| e.table().is_some();
     let emitters = scene.emitters.as_slice();
     if emitters.iter().all(is_table) {
         "directions uniform in solid angle (over the cells that emit), weighted by the intensity"
@@ -95,12 +95,17 @@ pub fn trace_replicate(
     let (scene, number) = (grids.scene, plan.photons_per_replicate);
     let receivers = Receivers::new(&scene.geometry, &grids.receivers);
     let points = PointSet { sequence: SEQUENCE, seed: plan.seed, replicate, number }.any()?;
-    let emitters = WeightedEmitters::new(&scene.emitters)?;
+    let emitters = scene.emitters.with_weights()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
+    let range = 0..number;
     let sink = || receivers.fixed_point_sink(plan.units_per_photon());
-    let complete = trace_weighted(scene, &emitters, &points, 0..number, how, sink);
+    let traced = if scene.is_coloured() {
+        trace_range(scene, &emitters, &points, range, Rgb::WHITE, how, sink)
+    } else {
+        trace_range(scene, &emitters, &points, range, Grey, how, sink)
+    };
     let counts = (0..grids.receivers.len()).flat_map(|i| receivers.counts(i).iter());
-    Ok(complete.then(|| counts.collect()))
+    Ok(traced.complete.then(|| counts.collect()))
 }
 
 /// The illuminance of every cell of all grids, and what tells its spread over replicates.

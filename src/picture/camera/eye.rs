@@ -4,19 +4,16 @@
 //! scattering surface by shadow rays what comes straight from emitters, L D S* E; and from the photons there what had at
 //! least one event before, L (S|D)+ D S* E. Each once.
 
-use std::f64::consts::FRAC_1_PI;
-
 use glam::DVec3;
 
-use crate::emitter::Emitter;
+use crate::emitter::{Emits, Emitter};
 use crate::geometry::{Hit, Side, Whereabouts};
 use crate::picture::camera::pinhole::EyeRay;
 use crate::picture::camera::view::View;
-use crate::picture::gather::density::{Density, Gathered};
+use crate::picture::gather::{Density, Gathered};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::scene::Scene;
-use crate::surface::value::Leg;
-use crate::surface::{Dielectric, EyeWeight, Incidence, Material, mirror};
+use crate::surface::{EyeWeight, Incidence, Leg, Material, Way};
 use crate::transport::walk::MAX_EVENTS;
 
 /// What an eye path looks for.
@@ -93,69 +90,75 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
                 add(found, weight, seen(scene, origin, direction, end));
                 if hit.is_none() {
-                    add(found, weight, self.view.spec.background_cd_m2);
+                    add(found, weight, self.view.camera.background_cd_m2);
                 }
             }
             let Some(hit) = hit else { return };
-            let bsdf = scene.material(hit.surface);
-            if bsdf.scatters() {
-                let lit = self.scattered(&hit, &path, chooser);
+            let material = scene.material(hit.surface);
+            if material.scatters() {
+                let lit = self.scattered(material, &hit, &path, chooser);
                 add(found, weight, lit);
             }
-            let onward = match bsdf {
-                Material::Dielectric(glass) => Some(self.pass_glass(glass, &hit, &mut path, chooser)),
-                _ => pass_on(bsdf, &hit, &mut path, chooser),
-            };
-            let Some((onward, through)) = onward else { return };
-            path.leave(&hit, onward, through);
+            if !self.pass_on(material, &hit, &mut path, chooser) {
+                return;
+            }
         }
         self.killed += 1;
     }
 
-    /// Glass: mirrored and refracted, both where both are worth it. Of these the mirrored path waits.
-    fn pass_glass<R: Chooser>(
+    /// Follows what goes on specularly: whether anything does. Of two ways both are followed where nothing is absorbed and both
+    /// are worth it, of which the mirrored one waits; else one of them is chosen.
+    fn pass_on<R: Chooser>(
         &mut self,
-        glass: &Dielectric,
+        material: &Material,
         hit: &Hit,
         path: &mut Branch,
         chooser: &mut R,
-    ) -> (DVec3, bool) {
-        let ways = glass.ways(&incidence(hit, path.direction));
-        let r = ways.reflectance;
-        let both = r > 0.0 && r < 1.0 && path.share * r.min(1.0 - r) >= LEAST_SHARE;
-        if both {
-            let mut branch = *path;
-            branch.weight.scale(r);
-            branch.share *= r;
-            branch.leave(hit, ways.mirrored().0, false);
-            self.pending.push(branch);
-            path.weight.scale(1.0 - r);
-            path.share *= 1.0 - r;
-        }
-        let through = both || !chooser.happens(r);
-        let (onward, _) = if through { ways.refracted() } else { ways.mirrored() };
-        if through {
-            path.weight.scale(glass.luminance_factor(hit.front));
-        }
-        (onward, through)
+    ) -> bool {
+        let ways = material.specular(&Incidence::of(hit, path.direction));
+        let (way, through, chance) = match (ways.mirrored, ways.through) {
+            (None, None) => return false,
+            (Some(mirrored), None) => (mirrored, false, 1.0),
+            (None, Some(straight)) => (straight, true, 1.0),
+            (Some(mirrored), Some(straight)) => {
+                let r = if ways.lossless { mirrored.part[0] } else { 0.5 };
+                if ways.lossless && path.share * r.min(1.0 - r) >= LEAST_SHARE {
+                    let mut branch = Branch { share: path.share * r, ..*path };
+                    branch.take(hit, &mirrored, false, 1.0);
+                    self.pending.push(branch);
+                    path.share *= 1.0 - r;
+                    (straight, true, 1.0)
+                } else if chooser.happens(r) {
+                    (mirrored, false, r)
+                } else {
+                    (straight, true, 1.0 - r)
+                }
+            }
+        };
+        path.take(hit, &way, through, chance);
+        ways.lossless || path.weight.roulette(chooser)
     }
 
     /// The light that a surface scatters to the eye: by shadow rays as returned, by photons as gathered.
-    fn scattered<R: Chooser>(&mut self, hit: &Hit, path: &Branch, chooser: &mut R) -> [f64; 3] {
-        let bsdf = self.view.scene.material(hit.surface);
+    fn scattered<R: Chooser>(
+        &mut self,
+        material: &Material,
+        hit: &Hit,
+        path: &Branch,
+        chooser: &mut R,
+    ) -> [f64; 3] {
         let wo = Leg { direction: -path.direction, front: hit.front };
+        let weight = path.weight.weight();
         for density in self.looks.densities {
-            if let Material::Lambertian { reflectance } = bsdf {
-                let value = reflectance.by_channel().map(|r| r * FRAC_1_PI);
-                let weight = path.weight.weight();
+            if let Some(value) = material.even_value() {
                 let weight = std::array::from_fn(|c| weight[c] * value[c]);
                 density.gather_evenly(hit, channels(weight), &mut self.gathered);
                 continue;
             }
             let value = |travel: DVec3, front: bool| {
-                channels(bsdf.eval(hit.normal, Leg { direction: -travel, front }, wo))
+                channels(material.eval(hit.normal, Leg { direction: -travel, front }, wo))
             };
-            density.gather(hit, channels(path.weight.weight()), value, &mut self.gathered);
+            density.gather(hit, channels(weight), value, &mut self.gathered);
         }
         let scene = self.view.scene;
         if !self.looks.direct {
@@ -170,16 +173,13 @@ impl<'a, const C: usize> EyePath<'a, C> {
 }
 
 impl Branch {
-    fn leave(&mut self, hit: &Hit, onward: DVec3, through: bool) {
+    /// Goes on from a surface along a way that was chosen with this chance.
+    fn take(&mut self, hit: &Hit, way: &Way, through: bool, chance: f64) {
+        self.weight.follow(way, chance);
         self.at.leave(hit, if hit.front == through { Side::Back } else { Side::Front });
-        (self.origin, self.direction) = (hit.position, onward);
+        (self.origin, self.direction) = (hit.position, way.direction);
         self.events += 1;
     }
-}
-
-fn incidence(hit: &Hit, direction: DVec3) -> Incidence {
-    let sign = if hit.front { 1.0 } else { -1.0 };
-    Incidence { direction, facet: hit.normal * sign, smooth: hit.shading_normal * sign, front: hit.front }
 }
 
 /// Luminance of the emitters that a ray crosses within a distance.
@@ -196,9 +196,9 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
     sum
 }
 
-/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Panels stand in nobody's way.
+/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Area lights stand in nobody's way.
 fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, chooser: &mut R) -> [f64; 3] {
-    let bsdf = scene.material(hit.surface);
+    let material = scene.material(hit.surface);
     let from = |side: Side| {
         let mut at = *at;
         at.leave(hit, side);
@@ -210,7 +210,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
         let place = place_on(emitter, chooser);
         let Some(light) = emitter.direct_light(hit.position, place) else { continue };
         let wi = Leg::new(light.towards, hit.normal);
-        let value = bsdf.eval(hit.normal, wi, wo);
+        let value = material.eval(hit.normal, wi, wo);
         if value == [0.0; 3] {
             continue;
         }
@@ -228,36 +228,9 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
 /// Coordinates of a point of an emitter, where it has more than one.
 #[inline]
 fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
-    match emitter.direct_coordinates() {
+    match emitter.kind().direct_coordinates {
         0 => [0.0; 2],
         _ => [chooser.uniform(Purpose::BeamPosition), chooser.uniform(Purpose::BeamPosition)],
-    }
-}
-
-/// Where an eye path goes on from anything but glass: (direction, whether through the surface); `None` where it ends.
-fn pass_on<R: Chooser>(
-    bsdf: &Material,
-    hit: &Hit,
-    path: &mut Branch,
-    chooser: &mut R,
-) -> Option<(DVec3, bool)> {
-    match bsdf {
-        Material::Mirror { reflectance } => {
-            let onward = mirror::reflected(&incidence(hit, path.direction)).0;
-            path.weight.attenuate(reflectance.by_channel(), chooser).then_some((onward, false))
-        }
-        Material::Tabulated(table) => {
-            let [mirrored, straight] = table.beyond(hit.normal, path.direction, hit.front);
-            // Both only where the two sides of a table differ: one of them, counted twice.
-            let (way, times) = match (mirrored, straight) {
-                (Some(a), Some(b)) => (if chooser.happens(0.5) { a } else { b }, 2.0),
-                (Some(way), None) | (None, Some(way)) => (way, 1.0),
-                (None, None) => return None,
-            };
-            let part = way.part.map(|p| p * times);
-            path.weight.attenuate(part, chooser).then_some((way.direction, way.through))
-        }
-        Material::Dielectric(_) | Material::Lambertian { .. } | Material::Absorber => None,
     }
 }
 
@@ -272,3 +245,6 @@ fn add(sum: &mut [f64; 3], weight: EyeWeight, value: [f64; 3]) {
 pub(crate) fn channels<const C: usize>(rgb: [f64; 3]) -> [f64; C] {
     std::array::from_fn(|c| rgb[c])
 }
+
+#[cfg(test)]
+mod tests;

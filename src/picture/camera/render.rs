@@ -7,22 +7,24 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::picture::camera::eye::{EyePath, Looks};
-use crate::picture::camera::film::{PixelSums, SETS, Sums, TILE, TILE_PIXELS};
-use crate::picture::camera::filter;
-use crate::picture::camera::view::View;
-use crate::picture::gather::density::Density;
+use crate::picture::gather::Density;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::hash::stream_key;
 use crate::sequence::owen::OwenPoints;
 use crate::surface::luminance_of;
 
-/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not hold all of
-/// them.
+use super::eye::{EyePath, Looks};
+use super::film::{Sums, TILE, TILE_PIXELS};
+use super::filter;
+use super::pixel::{PixelSums, SETS};
+use super::view::View;
+
+/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not
+/// hold all of them.
 #[derive(Debug, Clone)]
 pub struct Pass<'d, const C: usize> {
-    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run, so that passes add
-    /// up.
+    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run,
+    /// so that passes add up.
     pub densities: &'d [Density<'d, C>],
     /// Replicates that have photons in this pass.
     pub replicates: Range<u32>,
@@ -34,21 +36,11 @@ pub struct Pass<'d, const C: usize> {
     pub direct: bool,
 }
 
-impl<'d, const C: usize> Pass<'d, C> {
-    /// All there is: densities of all photons, of this many replicates.
-    pub fn whole(densities: &'d [Density<'d, C>], replicates: u32) -> Self {
-        Self { densities, replicates: 0..replicates, finishes: true, emission: true, direct: true }
-    }
-
-    /// Emitters and the background alone: what is left to the eye where every photon is joined to the pinhole.
-    pub fn emission() -> Self {
-        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false }
-    }
-
-    /// Further photons of these replicates.
-    pub fn photons(densities: &'d [Density<'d, C>], replicates: Range<u32>, finishes: bool) -> Self {
-        Self { densities, replicates, finishes, emission: false, direct: false }
-    }
+impl<const C: usize> Pass<'_, C> {
+    /// Emitters and the background alone: what is left to the eye where every photon is joined to the
+    /// pinhole.
+    pub const EMISSION: Self =
+        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false };
 }
 
 /// What a pass did beside its pixels.
@@ -76,16 +68,16 @@ pub fn render<const C: usize>(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Rendered> {
-    if !(C == 3 || (C == 1 && !view.scene.is_coloured())) || sums.pixels() != view.spec.pixels {
+    if !(C == 3 || (C == 1 && !view.scene.is_coloured())) || sums.pixels() != view.camera.pixels {
         return Err(Diagnostic::new(
             Kind::Range,
             format!("a picture of {C} channels and {:?} pixels", sums.pixels()),
-            format!("3 channels for a scene in colour, else 1 or 3; {:?} pixels", view.spec.pixels),
+            format!("3 channels for a scene in colour, else 1 or 3; {:?} pixels", view.camera.pixels),
         ));
     }
-    let pixels = view.spec.pixels;
+    let pixels = view.camera.pixels;
     let (killed, unseen) = (AtomicU64::new(0), AtomicU64::new(0));
-    let sets = SETS.min(view.spec.samples);
+    let sets = SETS.min(view.camera.samples);
     sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
         let mut brush = Brush::new(view, pass, sets);
         let corner = Sums::<C>::corner(pixels, tile);
@@ -125,7 +117,7 @@ struct Brush<'a, const C: usize> {
 
 impl<'a, const C: usize> Brush<'a, C> {
     fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32) -> Self {
-        let samples_per_set = view.spec.samples.div_ceil(sets);
+        let samples_per_set = view.camera.samples.div_ceil(sets);
         let looks = Looks { emission: pass.emission, direct: pass.direct, densities: pass.densities };
         let path = EyePath::new(view, looks, pass.replicates.end as usize);
         Self { view, pass, sets, samples_per_set, path }
@@ -152,22 +144,13 @@ impl<'a, const C: usize> Brush<'a, C> {
             sums.by_set[set as usize] += (luminance_of(&found) / f64::from(self.samples_per_set)) as f32;
         }
         let gathered = &self.path.gathered;
-        sums.difference += (luminance_of(&gathered.second) - luminance_of(&gathered.value)) * of_sample;
-        sums.further_bias += gathered.nearest_bias * of_sample;
-        sums.sparse_square += (gathered.sparse * of_sample).powi(2);
-        if !self.pass.finishes {
-            sums.add_part(gathered.value.map(|v| v * of_sample));
-            return;
-        }
-        for replicate in self.pass.replicates.clone() {
-            sums.add_replicate(gathered.by_replicate[replicate as usize] * of_sample);
-        }
+        sums.error.add(gathered, of_sample, self.pass.replicates.clone(), self.pass.finishes);
     }
 
     fn sample(&mut self, points: &OwenPoints, k: u32, [column, row]: [u32; 2]) -> [f64; 3] {
         let mut chooser = Coordinates::new(points, u64::from(k), true);
         let mut pair = || [(); 2].map(|()| chooser.uniform(Purpose::BeamPosition));
-        let [dx, dy] = filter::offset(self.view.spec.filter, pair());
+        let [dx, dy] = filter::offset(self.view.camera.filter, pair());
         let place = DVec2::new(f64::from(column) + 0.5 + dx, f64::from(row) + 0.5 + dy);
         let pinhole = &self.view.pinhole;
         let ray = if pinhole.has_lens() { pinhole.ray_by_lens(place, pair()) } else { pinhole.ray(place) };

@@ -1,13 +1,15 @@
-//! Light tracing to a pinhole: every photon that arrives on a scattering surface is joined to the pinhole where it sees it.
+//! Light tracing to a pinhole: every photon that arrives on a scattering surface is joined to the pinhole
+//! where it sees it.
 //!
-//! The luminance of pixel j is the mean of L over the picture plane weighted by the pixel's filter h_j (its integral over
-//! pixel units is 1). A photon of flux F that arrives at x with the weight w adds
+//! The luminance of pixel j is the mean of L over the picture plane weighted by the pixel's filter h_j (its
+//! integral over pixel units is 1). A photon of flux F that arrives at x with the weight w adds
 //!
 //!   F w f(wi, wo) cos(theta_x) / d^2   h_j(p)   (focal length in pixels)^2 / cos^3(theta_camera),
 //!
-//! d the distance of the pinhole, p the point of the picture where x is seen; the last factor is the picture's area, in
-//! pixels, per solid angle at the pinhole. There is no density estimate and so no bias. Light that is scattered last and seen by
-//! mirror or through glass is not found: no ray joins such a point to the pinhole.
+//! d the distance of the pinhole, p the point of the picture where x is seen; the last factor is the
+//! picture's area, in pixels, per solid angle at the pinhole. There is no density estimate and so no bias.
+//! Light that is scattered last and seen by mirror or through glass is not found: no ray joins such a point
+//! to the pinhole.
 //!
 //! Sums are fixed-point integers of 128 bits, added in any order with the same result.
 
@@ -18,25 +20,24 @@ use glam::{DVec2, DVec3};
 use crate::error::Result;
 use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::{Hit, Side, Whereabouts};
-use crate::scene::Scene;
-use crate::scene::camera::{CameraSpec, Filter};
-use crate::surface::value::Leg;
-use crate::surface::{Material, luminance, luminance_of};
-
-use crate::picture::camera::film;
-use crate::picture::camera::film::Film;
-use crate::picture::camera::filter;
-use crate::picture::camera::pinhole::Pinhole;
-use crate::picture::camera::view::View;
 use crate::picture::photon_map::Channels;
 use crate::picture::photon_map::sink::scattering_surfaces;
-use crate::tally::ReceiverSink;
-use crate::tally::wide_sum::WideSum;
+use crate::scene::Scene;
+use crate::scene::camera::{Camera, Filter};
+use crate::surface::{Leg, Material, luminance, luminance_of};
+use crate::tally::{ReceiverSink, WideSum};
 use crate::transport::{Arrival, Sink};
 
-/// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is large.
+use super::film::{self, Film};
+use super::filter;
+use super::pinhole::Pinhole;
+use super::view::View;
+
+/// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is
+/// large.
 const FRACTION_BITS: i32 = 48;
-/// Contributions are cut at 2^60 of that: the pinhole nearer to a surface than a thousand-millionth of the scene.
+/// Contributions are cut at 2^60 of that: the pinhole nearer to a surface than a thousand-millionth of the
+/// scene.
 const MOST_CONTRIBUTION: f64 = (1u64 << 60) as f64;
 
 /// The sums of a splatted picture, for one replicate.
@@ -71,6 +72,13 @@ impl<const C: usize> SplatMoments<C> {
         Self { sum: vec![[0.0; C]; pixels], square: vec![0.0; pixels] }
     }
 
+    /// R s^2 of the R partial sums of a pixel's luminance; NaN for one replicate.
+    pub fn variance(&self, pixel: usize, replicates: u32) -> f64 {
+        let (r, y) = (f64::from(replicates), luminance_of(&self.sum[pixel]));
+        let spread = r / (r - 1.0) * (self.square[pixel] - y * y / r).max(0.0);
+        if replicates < 2 { f64::NAN } else { spread }
+    }
+
     /// Zeros again.
     pub fn restart(&mut self) {
         self.sum.fill([0.0; C]);
@@ -87,23 +95,16 @@ impl<'s, const C: usize> Splat<'s, C> {
         Film::<C>::memory_bytes(pixels).saturating_add(sums)
     }
 
-    /// Whether a picture of so many columns and rows can be splatted.
-    ///
-    /// # Errors
-    /// One without pixels; one that takes more than [`film::MOST_PICTURE_BYTES`].
-    pub fn check_memory(pixels: [u32; 2]) -> Result<()> {
-        film::check_memory(pixels, Self::memory_bytes(pixels))
-    }
-
     /// Sums at zero for a camera.
     ///
     /// # Errors
-    /// Those of [`Self::check_memory`].
-    pub fn new(scene: &'s Scene, spec: &CameraSpec) -> Result<Self> {
-        Self::check_memory(spec.pixels)?;
+    /// A picture that takes more than [`film::MOST_PICTURE_BYTES`].
+    pub fn new(scene: &'s Scene, spec: &Camera) -> Result<Self> {
+        film::check_memory(spec.pixels, Self::memory_bytes(spec.pixels))?;
         let pixels = u64::from(spec.pixels[0]) * u64::from(spec.pixels[1]);
-        let pinhole = Pinhole::new(spec)?;
-        // A power of two near the scene's size, so that a scene and the same scene times a power of two agree bit for bit.
+        let pinhole = Pinhole::new(spec);
+        // A power of two near the scene's size, so that a scene and the same scene times a power of two agree
+        // bit for bit.
         let (low, high) = scene.geometry.bounds();
         let size = (high - low).length().max((spec.position - low).length());
         let size = if size > 0.0 { libm::scalbn(1.0, libm::ilogb(size)) } else { 1.0 };
@@ -209,8 +210,9 @@ impl<'s, const C: usize> Splat<'s, C> {
     }
 }
 
-/// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it, whose spread says
-/// nothing: that of (photons + 1), a photon being what one would bring that arrives where the pixel's middle looks. 0 where there are enough.
+/// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it,
+/// whose spread says nothing: that of (photons + 1), a photon being what one would bring that arrives where
+/// the pixel's middle looks. 0 where there are enough.
 pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64) -> f64 {
     let one = photon_lm * of_one_lumen(view, pixel);
     let photons = luminance_cd_m2 / one;
@@ -218,10 +220,10 @@ pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64)
     if photons < FEWEST_HITS as f64 { one * (photons + 1.0).sqrt() } else { 0.0 }
 }
 
-/// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where the pixel's middle looks; 0 if
-/// nothing is there.
+/// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where
+/// the pixel's middle looks; 0 if nothing is there.
 fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
-    let columns = view.spec.pixels[0] as usize;
+    let columns = view.camera.pixels[0] as usize;
     let place = DVec2::new((pixel % columns) as f64 + 0.5, (pixel / columns) as f64 + 0.5);
     let ray = view.pinhole.ray(place);
     let Some(hit) = view.scene.geometry.nearest(ray.origin, ray.direction, &view.start, &mut 0) else {
@@ -232,7 +234,7 @@ fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
     let towards = if to_eye.dot(hit.normal) > 0.0 { hit.normal } else { -hit.normal };
     let bsdf = view.scene.material(hit.surface);
     let f = bsdf.eval(hit.normal, Leg::new(towards, hit.normal), Leg::new(to_eye, hit.normal));
-    let h = filter::density(view.spec.filter, [0.0; 2]);
+    let h = filter::density(view.camera.filter, [0.0; 2]);
     let per_area = to_eye.dot(hit.normal).abs() / (seen.distance_m * seen.distance_m);
     luminance(f) * per_area * seen.pixels_per_sr * h
 }
@@ -245,7 +247,8 @@ fn value<const C: usize>(bsdf: &Material, hit: &Hit, wi: DVec3, wo: DVec3) -> [f
     if C == 1 { [luminance(rgb); C] } else { std::array::from_fn(|c| rgb[c]) }
 }
 
-/// Joins the arrivals of one batch to the pinhole, direct light included, and adds them to a scene's receivers.
+/// Joins the arrivals of one batch to the pinhole, direct light included, and adds them to a scene's
+/// receivers.
 #[derive(Debug)]
 pub struct SplatSink<'r, 's, const C: usize> {
     receivers: ReceiverSink<'r, 's>,

@@ -1,43 +1,41 @@
 //! What a run asks of the camera: to add what it sees of a pass, and to make a film of the sums.
 //!
-//! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error comes from whole
-//! ones.
+//! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error
+//! comes from whole ones.
 
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::error::Result;
-use crate::picture::camera::{Film, Pass, Sums, View, render};
-use crate::picture::gather::bandwidth;
-use crate::picture::gather::density::{Choice, Density};
-use crate::picture::gather::footprint::Footprints;
-use crate::picture::photon_map::PhotonMap;
-use crate::scene::Scene;
-use crate::scene::camera::{Bandwidth, CameraSpec};
-
 use crate::picture::Watch;
+use crate::picture::camera::{Film, Pass, Sums, View, render};
+use crate::picture::gather::footprint::Footprints;
+use crate::picture::gather::{Choice, Density, bandwidth};
+use crate::picture::photon_map::{Frame, Kept, Photon, PhotonMap};
 use crate::picture::summary::Chosen;
-use crate::run::plan::Plan;
+use crate::run::Plan;
+use crate::scene::Scene;
+use crate::scene::camera::{Bandwidth, Camera};
 
 /// The bandwidth of a density, chosen once: from the first pass that has photons of it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Settled {
+struct Settled {
     bandwidth: Bandwidth,
-    pub(crate) chosen: Chosen,
+    chosen: Chosen,
 }
 
 /// Fewest neighbours in a pass: of k nearest the relative variance is 1 / (k - 2).
 const FEWEST_IN_PASS: u32 = 16;
 
-/// What the camera sees in a pass.
-pub(crate) struct Seen<'m, const C: usize> {
+/// The photons of a pass.
+pub(crate) struct Batch<const C: usize> {
     /// Photons that were not scattered before, and those that were.
-    pub(crate) maps: &'m [PhotonMap<C>; 2],
+    pub(crate) photons: Kept<C>,
+    /// What positions are counted in.
+    pub(crate) frame: Frame,
     /// Flux of one of them, lm: that of the whole run.
     pub(crate) photon_lm: f64,
-    /// Of each of them; none where there are no photons.
-    pub(crate) bandwidths: [Option<Settled>; 2],
     /// Which part of the run's photons this is.
     pub(crate) part: f64,
     /// The replicates they are of: whole ones, or a part of one.
@@ -55,18 +53,21 @@ pub(crate) struct Seeing<const C: usize> {
     pub(crate) killed: u64,
     /// Pixels that an interrupt left unseen.
     pub(crate) unseen: u64,
+    /// Bandwidths of light that no surface scattered before, and of all other.
+    pub(crate) bandwidths: [Chosen; 2],
 }
 
 /// The camera at work.
 pub(crate) struct Eye<'a, const C: usize> {
-    view: View<'a>,
-    spec: &'a CameraSpec,
+    pub(crate) view: View<'a>,
     watch: Watch<'a>,
     killed: u64,
     unseen: u64,
     footprints: Arc<Footprints<'a>>,
     sums: Sums<C>,
+    /// Replicates of the run as planned.
     replicates: u32,
+    bandwidths: [Option<Settled>; 2],
 }
 
 impl<'a, const C: usize> Eye<'a, C> {
@@ -74,28 +75,29 @@ impl<'a, const C: usize> Eye<'a, C> {
     ///
     /// # Errors
     /// A camera that cannot see; a picture that takes too much memory.
-    pub(crate) fn new(scene: &'a Scene, spec: &'a CameraSpec, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
+    pub(crate) fn new(scene: &'a Scene, camera: &Camera, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
         Ok(Self {
-            view: View::new(scene, spec, plan.seed)?,
-            spec,
+            view: View::new(scene, camera, plan.seed())?,
             watch,
             killed: 0,
             unseen: 0,
             footprints: Arc::new(Footprints::new(&scene.geometry)),
-            sums: Sums::new(spec.pixels)?,
-            replicates: plan.replicates,
+            sums: Sums::new(camera.pixels)?,
+            replicates: plan.replicates(),
+            bandwidths: [None; 2],
         })
     }
 
-    /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates; `None` where there
-    /// is nothing to choose from.
-    pub(crate) fn choose(&self, map: &PhotonMap<C>, part: f64, replicates: u32) -> Option<Settled> {
-        let mut bandwidth = self.spec.bandwidth;
+    /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates;
+    /// `None` where there is nothing to choose from.
+    fn choose(&self, map: &PhotonMap<C>, part: f64, replicates: u32) -> Option<Settled> {
+        let camera = &self.view.camera;
+        let mut bandwidth = camera.bandwidth;
         let mut chosen = Chosen { radius_m: None, neighbours: None };
         match bandwidth {
             Bandwidth::Automatic if map.photons().is_empty() => return None,
             Bandwidth::Automatic => {
-                let found = bandwidth::choose(&self.footprints, map, self.spec.kernel, replicates, part);
+                let found = bandwidth::choose(&self.footprints, map, camera.kernel, replicates, part);
                 bandwidth = found.bandwidth();
                 chosen.radius_m = Some(found.radius_m);
                 chosen.neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
@@ -109,8 +111,8 @@ impl<'a, const C: usize> Eye<'a, C> {
     }
 
     /// The radius that a map of photons is sorted for, m: that of the bandwidth if it is known.
-    pub(crate) fn radius_to_sort_for_m(&self, settled: Option<&Settled>) -> f64 {
-        match settled.map_or(self.spec.bandwidth, |s| s.bandwidth) {
+    fn radius_to_sort_for_m(&self, settled: Option<Settled>) -> f64 {
+        match settled.map_or(self.view.camera.bandwidth, |s| s.bandwidth) {
             Bandwidth::Radius(radius_m)
             | Bandwidth::Progressive(radius_m)
             | Bandwidth::AtLeast { radius_m, .. } => radius_m,
@@ -119,11 +121,28 @@ impl<'a, const C: usize> Eye<'a, C> {
         }
     }
 
-    /// Adds what is seen in a pass.
-    pub(crate) fn add(&mut self, seen: &Seen<'_, C>) -> Result<()> {
+    /// The map of a batch's photons sorted for the bandwidth of their density, which they settle if nothing
+    /// has.
+    fn map_of(&mut self, density: usize, photons: Vec<Photon<C>>, batch: &Batch<C>) -> PhotonMap<C> {
+        let settled = self.bandwidths[density];
+        let radius_m = self.radius_to_sort_for_m(settled);
+        let map = PhotonMap::build(photons, batch.frame, radius_m);
+        if settled.is_some() {
+            return map;
+        }
+        self.bandwidths[density] = self.choose(&map, batch.part, batch.replicates.len() as u32);
+        let wanted_m = self.radius_to_sort_for_m(self.bandwidths[density]);
+        if wanted_m > 0.0 && wanted_m != radius_m { map.rebuilt(wanted_m) } else { map }
+    }
+
+    /// Adds what is seen of a batch, and gives its photons as they were mapped.
+    pub(crate) fn add(&mut self, mut batch: Batch<C>) -> Result<[PhotonMap<C>; 2]> {
+        let [caustic, diffuse] = std::mem::take(&mut batch.photons);
+        let caustic = self.map_of(0, joined(caustic), &batch);
+        let maps = [caustic, self.map_of(1, joined(diffuse), &batch)];
         // The neighbours of a pass are a part of those of the run.
-        let of_pass = |n: u32| ((f64::from(n) * seen.part + 0.5) as u32).max(FEWEST_IN_PASS.min(n));
-        let density = |k: usize, settled: Settled| {
+        let of_pass = |n: u32| ((f64::from(n) * batch.part + 0.5) as u32).max(FEWEST_IN_PASS.min(n));
+        let density = |map, settled: Settled| {
             let bandwidth = match settled.bandwidth {
                 Bandwidth::Nearest(n) => Bandwidth::Nearest(of_pass(n)),
                 Bandwidth::AtLeast { radius_m, neighbours } => {
@@ -131,25 +150,27 @@ impl<'a, const C: usize> Eye<'a, C> {
                 }
                 other => other,
             };
-            let choice = Choice { bandwidth, kernel: self.spec.kernel, replicates: self.replicates };
-            Density::on(Arc::clone(&self.footprints), &seen.maps[k], seen.photon_lm, choice)
+            let choice = Choice { bandwidth, kernel: self.view.camera.kernel, replicates: self.replicates };
+            Density::new(Arc::clone(&self.footprints), map, batch.photon_lm, choice)
         };
-        let with_photons = (0..2).filter(|k| !seen.maps[*k].photons().is_empty());
+        let with_photons = maps.iter().zip(self.bandwidths).filter(|(map, _)| !map.photons().is_empty());
         let densities: Vec<Density<'_, C>> =
-            with_photons.filter_map(|k| Some(density(k, seen.bandwidths[k]?))).collect();
+            with_photons.filter_map(|(map, settled)| Some(density(map, settled?))).collect();
         let pass = Pass {
             densities: &densities,
-            replicates: seen.replicates.clone(),
-            finishes: seen.finishes,
-            emission: seen.last,
-            direct: seen.last,
+            replicates: batch.replicates,
+            finishes: batch.finishes,
+            emission: batch.last,
+            direct: batch.last,
         };
-        self.look(&pass, seen.last)
+        self.look(&pass, batch.last)?;
+        Ok(maps)
     }
 
-    /// Adds emitters and background as seen directly, by mirrors and through glass, without light on surfaces.
+    /// Adds emitters and background as seen directly, by mirrors and through glass, without light on
+    /// surfaces.
     pub(crate) fn add_emitters(&mut self) -> Result<()> {
-        self.look(&Pass::emission(), true)
+        self.look(&Pass::EMISSION, true)
     }
 
     /// Takes all photons so far for this many times their flux.
@@ -162,8 +183,8 @@ impl<'a, const C: usize> Eye<'a, C> {
         self.sums.drop_unfinished();
     }
 
-    /// An interrupt while photons are still to come ends their tracing, not the look at those that are there: it is the last
-    /// look that it ends, unless tracing had been ended by it already.
+    /// Ctrl-C while tracing: stop tracing, render what has been traced. Ctrl-C while rendering the last pass:
+    /// stop.
     fn look(&mut self, pass: &Pass<'_, C>, last: bool) -> Result<()> {
         let [columns, rows] = self.sums.pixels().map(u64::from);
         let done = AtomicU64::new(0);
@@ -183,6 +204,16 @@ impl<'a, const C: usize> Eye<'a, C> {
 
     /// The film, and what is to be said of it.
     pub(crate) fn finish(self) -> Seeing<C> {
-        Seeing { film: self.sums.finish(), killed: self.killed, unseen: self.unseen }
+        let bandwidths = self.bandwidths.map(|b| b.map_or(Chosen::default(), |settled| settled.chosen));
+        Seeing { film: self.sums.finish(), killed: self.killed, unseen: self.unseen, bandwidths }
     }
+}
+
+/// Blocks one after another; each is dropped when it is copied.
+fn joined<const C: usize>(blocks: Vec<Vec<Photon<C>>>) -> Vec<Photon<C>> {
+    let mut all = Vec::with_capacity(blocks.iter().map(Vec::len).sum());
+    for block in blocks {
+        all.extend_from_slice(&block);
+    }
+    all
 }

@@ -3,30 +3,29 @@
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::picture::camera::splat;
-use crate::picture::camera::splat::{Splat, SplatMoments};
+use crate::picture::camera::splat::{self, Splat, SplatMoments};
 use crate::picture::camera::{Film, View};
 use crate::picture::photon_map::Channels;
-use crate::scene::Scene;
-use crate::scene::camera::{CameraSpec, Method};
-use crate::surface::luminance_of;
-
-use crate::picture::passes::eye::{Eye, Seeing};
 use crate::picture::summary::{Cost, PictureSummary};
 use crate::picture::{Picture, Watch};
 use crate::run::{Outcome, Plan, trace_by};
+use crate::scene::Scene;
+use crate::scene::camera::{Camera, Method};
+use crate::surface::luminance_of;
+
+use super::eye::{Eye, Seeing};
 
 /// Traces a scene and splats its photons; emitters and background are seen by eye paths.
 pub(crate) fn trace<const C: usize, T: Channels<C>>(
     scene: &Scene,
-    spec: &CameraSpec,
+    camera: &Camera,
     plan: &Plan,
     watch: Watch<'_>,
     carried: T,
 ) -> Result<(Outcome, Picture<C>)> {
-    let mut eye = Eye::<C>::new(scene, spec, plan, watch)?;
-    let mut splat = Splat::<C>::new(scene, spec)?;
-    let mut moments = SplatMoments::<C>::new(spec.pixels[0] as usize * spec.pixels[1] as usize);
+    let mut eye = Eye::<C>::new(scene, camera, plan, watch)?;
+    let mut splat = Splat::<C>::new(scene, camera)?;
+    let mut moments = SplatMoments::<C>::new(camera.pixels[0] as usize * camera.pixels[1] as usize);
     let mut joined = 0;
     let outcome = trace_by(
         scene,
@@ -35,11 +34,11 @@ pub(crate) fn trace<const C: usize, T: Channels<C>>(
             let sink = || splat.sink(receivers.sink());
             let traced = tracer.trace_into(end, carried, sink, watch.interrupt, watch.photons)?;
             // What counts are whole replicates, and of the first one what is finished of it.
-            if traced.complete && (tracer.replicate() == 0 || end == plan.photons_per_replicate) {
+            if traced.complete && (tracer.replicate() == 0 || end == plan.photons_per_replicate()) {
                 if tracer.replicate() == 0 {
                     moments.restart();
                 }
-                splat.close(&mut moments, end == plan.photons_per_replicate);
+                splat.close(&mut moments, end == plan.photons_per_replicate());
                 joined = splat.joined();
             }
             Ok(traced)
@@ -48,8 +47,9 @@ pub(crate) fn trace<const C: usize, T: Channels<C>>(
     )?;
     let started = Instant::now();
     eye.add_emitters()?;
-    let Seeing { film, killed, unseen } = eye.finish();
-    let film = with_splats(film, &moments, &outcome, &View::new(scene, spec, plan.seed)?);
+    let view = eye.view.clone();
+    let Seeing { film, killed, unseen, .. } = eye.finish();
+    let film = with_splats(film, &moments, &outcome, &view);
     let cost = Cost::of(&film);
     let summary = PictureSummary {
         method: Method::Splat,
@@ -67,27 +67,26 @@ pub(crate) fn trace<const C: usize, T: Channels<C>>(
     Ok((outcome, Picture { film, summary, photons: None }))
 }
 
-/// The film of the eye's paths with the splats added to its pixels; there is no bias. Pixels that an interrupt left unseen stay so.
+/// The film of the eye's paths with the splats added to its pixels; there is no bias. Pixels that an
+/// interrupt left unseen stay so.
 fn with_splats<const C: usize>(
     mut film: Film<C>,
     moments: &SplatMoments<C>,
     outcome: &Outcome,
     view: &View<'_>,
 ) -> Film<C> {
-    let (photon_lm, r) = (outcome.photon_lm, f64::from(outcome.replicates));
-    for (pixel, (sum, square)) in moments.sum.iter().zip(&moments.square).enumerate() {
+    let photon_lm = outcome.photon_lm;
+    for (pixel, sum) in moments.sum.iter().enumerate() {
         if film.bias[pixel].is_nan() {
             continue;
         }
         for (value, sum) in film.value[pixel].iter_mut().zip(sum) {
             *value += sum * photon_lm;
         }
-        let y = luminance_of(sum);
-        // R s^2 of the R partial sums.
-        let variance = r / (r - 1.0) * (square - y * y / r).max(0.0) * photon_lm * photon_lm;
-        let (of_eye, owed) = (film.standard_error[pixel], splat::owed(view, pixel, photon_lm, y * photon_lm));
-        film.standard_error[pixel] =
-            if outcome.replicates < 2 { f64::NAN } else { (variance + of_eye * of_eye + owed * owed).sqrt() };
+        let (of_eye, y) = (film.standard_error[pixel], luminance_of(sum));
+        let owed = splat::owed(view, pixel, photon_lm, y * photon_lm);
+        let variance = moments.variance(pixel, outcome.replicates) * photon_lm * photon_lm;
+        film.standard_error[pixel] = (variance + of_eye * of_eye + owed * owed).sqrt();
     }
     film
 }

@@ -1,8 +1,9 @@
 //! Albedos above 1: refused, or scaled to 1, as the scene asks; never silently.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::surface::tabulated::Energy;
+use crate::surface::tabulated::face::Face;
 use crate::surface::tabulated::layer::Layer;
-use crate::surface::tabulated::{Energy, Face};
 
 /// Albedos up to here are 1 as far as values in f32 can tell.
 const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
@@ -53,7 +54,7 @@ pub(crate) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> 
         let most = excesses_most(layers, face);
         if most > ONE {
             for k in face.layers.into_iter().flatten() {
-                (0..layers[k].grids.len()).for_each(|slice| layers[k].grids.scale(slice, 1.0 / most));
+                (0..layers[k].grids.count()).for_each(|slice| layers[k].grids.scale(slice, 1.0 / most));
             }
         }
     }

@@ -6,7 +6,8 @@
 use std::f64::consts::PI;
 
 use crate::error::Result;
-use crate::sample::compact::{CompactGrids, Located};
+use crate::sample::angles::Located;
+use crate::sample::compact::CompactGrids;
 use crate::scattering::{Frame, Lobe, Quantity};
 
 /// The sampler of one lobe.
@@ -144,7 +145,7 @@ impl Layer {
         let of = |channel| {
             let mut sum = 0.0;
             for (k, weight) in mix.parts() {
-                sum += weight * self.grids.value_at(self.slice(channel, k), at);
+                sum += weight * self.grids.value(self.slice(channel, k), at);
             }
             sum
         };

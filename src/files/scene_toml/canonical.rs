@@ -1,0 +1,124 @@
+//! A scene's text without what light does not depend on: comments, layout, the order of keys, ways of writing a number, the
+//! camera. Two texts that differ in these alone have the same form, so photons that were kept serve both.
+
+use std::fmt::Write;
+
+use toml::de::{DeTable, DeValue};
+
+/// The values of a TOML text but for `[camera]`, keys sorted. A file, named by `file` or `image`, stands for its content, of which
+/// `hash_of` gives the hash. A text that is no TOML stays as it is.
+pub(crate) fn canonical(text: &str, hash_of: &dyn Fn(&str) -> Option<String>) -> String {
+    let body = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let Ok(root) = DeTable::parse(body) else { return text.to_string() };
+    let mut out = String::new();
+    write_table(&mut out, root.get_ref(), "camera", hash_of);
+    out
+}
+
+fn write_table(
+    out: &mut String,
+    table: &DeTable<'_>,
+    without: &str,
+    hash_of: &dyn Fn(&str) -> Option<String>,
+) {
+    let mut entries: Vec<_> =
+        table.iter().map(|(key, value)| (key.get_ref().as_ref(), value.get_ref())).collect();
+    entries.retain(|(key, _)| *key != without);
+    entries.sort_by_key(|(key, _)| *key);
+    out.push('{');
+    for (key, value) in entries {
+        put(out, format_args!("{key:?}="));
+        match (key, value.as_str().filter(|_| ["file", "image"].contains(&key)).and_then(hash_of)) {
+            (_, Some(hash)) => put(out, format_args!("{hash}")),
+            _ => write_value(out, value, hash_of),
+        }
+        out.push(';');
+    }
+    out.push('}');
+}
+
+fn write_value(out: &mut String, value: &DeValue<'_>, hash_of: &dyn Fn(&str) -> Option<String>) {
+    match value {
+        DeValue::String(text) => put(out, format_args!("{text:?}")),
+        DeValue::Boolean(truth) => put(out, format_args!("{truth}")),
+        DeValue::Datetime(time) => put(out, format_args!("{time}")),
+        DeValue::Integer(integer) => match i128::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(number) => put(out, format_args!("{number}")),
+            Err(_) => out.push_str(integer.as_str()),
+        },
+        DeValue::Float(float) => match float.as_str().parse::<f64>() {
+            // Whole numbers look like integers, others as the shortest decimal that is read as the same bits.
+            Ok(number) => put(out, format_args!("{number}")),
+            Err(_) => out.push_str(float.as_str()),
+        },
+        DeValue::Array(items) => {
+            out.push('[');
+            for item in items.iter() {
+                write_value(out, item.get_ref(), hash_of);
+                out.push(',');
+            }
+            out.push(']');
+        }
+        DeValue::Table(table) => write_table(out, table, "", hash_of),
+    }
+}
+
+fn put(out: &mut String, what: std::fmt::Arguments<'_>) {
+    // A String takes all that is written to it.
+    out.write_fmt(what).ok();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCENE: &str = "[[emitter]]\ntype = \"photometric\"\nfile = \"a.ies\"\nposition = [1, 2.5, 0]\n\
+                         [material.red]\nreflectance = 0.5\n[run]\nseed = 18446744073709551615\n";
+    const CAMERA: &str = "[camera]   # the picture\nposition = [1,\n  2, 3]\n# fov_deg = 3\nexposure = \"\"\"\n[run]\n\"\"\"\n\n";
+
+    fn form(text: &str) -> String {
+        canonical(text, &|name| (name == "a.ies").then(|| "HASH".to_owned()))
+    }
+
+    #[test]
+    fn comments_layout_order_numbers_and_the_camera_make_no_difference() {
+        for same in [
+            format!("\u{feff}# a scene\n\n{}", SCENE.replace('\n', "  # why\r\n\r\n")),
+            format!("{SCENE}{CAMERA}"),
+            format!("{CAMERA}{SCENE}"),
+            format!("camera = {{ fov_deg = 40, pixels = [4, 3] }}\n{SCENE}"),
+            format!("camera.fov_deg = 40\n{SCENE}"),
+            SCENE.replace("2.5", "0.25e1").replace("[1,", "[1.0,").replace(" 0]", " 0x0]"),
+            SCENE.replace(
+                "type = \"photometric\"\nfile = \"a.ies\"",
+                "file = \"a.ies\"\ntype = 'photometric'",
+            ),
+            "[run]\nseed = 18446744073709551615\n".to_owned() + SCENE.split("[run]").next().unwrap(),
+            SCENE.replace("[material.red]\n", "[material]\nred."),
+        ] {
+            assert_eq!(form(&same), form(SCENE), "{same}");
+        }
+        assert!(form(SCENE).contains("HASH") && !form(SCENE).contains("a.ies"));
+    }
+
+    #[test]
+    fn every_other_value_makes_a_difference() {
+        for other in [
+            SCENE.replace("2.5", "2.5000000000000004"),
+            SCENE.replace("615", "614"),
+            SCENE.replace("0]", "-0.0]"),
+            SCENE.replace("[1, 2.5", "[2.5, 1"),
+            SCENE.replace("a.ies", "b.ies"),
+            SCENE.replace("red", "blue"),
+            SCENE.replace("photometric", "isotropic"),
+            SCENE.replace("0.5", "\"0.5\""),
+            SCENE.replace("reflectance = 0.5", "reflectance = 0.5\ncamera = 1"),
+            SCENE.replace("seed", "photons"),
+        ] {
+            assert_ne!(form(&other), form(SCENE), "{other}");
+        }
+        let other_content = canonical(SCENE, &|_| Some("OTHER".to_owned()));
+        assert_ne!(other_content, form(SCENE));
+        assert_eq!(canonical("[camera\nx", &|_| None), "[camera\nx", "what is no TOML is not touched");
+    }
+}

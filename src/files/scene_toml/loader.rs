@@ -1,0 +1,59 @@
+//! What makes the parts of a scene that need its files.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+
+use super::table::Placed;
+use crate::error::{Diagnostic, Place, Result};
+use crate::files::bytes::Files;
+use crate::files::lm63;
+use crate::photometry::Photometry;
+
+/// Makes a part of a scene; whatever it says of itself has been checked when its table was read.
+pub(crate) type Make<T> = Box<dyn FnOnce(&mut Loader) -> Result<T>>;
+
+/// The files of a scene, and what is odd about them.
+#[derive(Debug)]
+pub(crate) struct Loader {
+    /// The scene file's name, for messages.
+    pub name: String,
+    pub files: Files,
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Loader {
+    /// The bytes of a file; errors point to where it is named.
+    pub fn bytes(&mut self, file: &Placed<String>) -> Result<Rc<[u8]>> {
+        self.files.load(&file.value).map_err(|e| self.at_name(file.place, e))
+    }
+
+    /// What messages call a file.
+    pub fn path(&self, file: &Placed<String>) -> PathBuf {
+        self.files.path(&file.value)
+    }
+
+    /// A photometric file; a tilt file is looked for beside it.
+    pub fn photometry(&mut self, file: &Placed<String>) -> Result<Photometry> {
+        let bytes = self.bytes(file)?;
+        let name = self.path(file).display().to_string();
+        let (folder, files) = (PathBuf::from(&file.value), &mut self.files);
+        let photometry = lm63::parse_with(&bytes, &name, &mut |tilt| {
+            files.load(&folder.with_file_name(tilt).to_string_lossy())
+        })?;
+        self.warnings.extend(photometry.warnings.iter().cloned());
+        Ok(photometry)
+    }
+
+    /// The error that a file cannot be opened, if it cannot.
+    pub fn missing(&self, file: &Placed<String>) -> Option<Diagnostic> {
+        self.files.probe(&file.value).err().map(|e| self.at_name(file.place, e))
+    }
+
+    fn at_name(&self, place: Place, error: Diagnostic) -> Diagnostic {
+        let pointed = error.placed(Some(place)).in_file(&self.name);
+        match pointed.advice() {
+            Some(_) => pointed,
+            None => pointed.hint("paths are relative to the folder of the scene file"),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! What a run found: sums over replicates, and the numbers with their standard errors that come of them.
+
+use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
+use crate::scene::Scene;
+use crate::tally::{Moments, Receivers};
+use crate::transport::parallel::Traced;
+use crate::transport::{Census, Ledger};
+
+use super::plan::Plan;
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StoppedBy {
+    /// All photons are traced.
+    Photons,
+    /// It was interrupted; what is here are the replicates finished by then, or, before the first was, the
+    /// first 2^m photons of it.
+    Interrupt,
+}
+
+/// What a run found: counts of photons by cell and account, from which [`Outcome::illuminance_lx`] and the
+/// others make numbers with their errors.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// What was asked for.
+    pub plan: Plan,
+    /// Photons that the sums stand for: fewer than planned after an interrupt.
+    pub photons: u64,
+    /// Replicates that the sums stand for.
+    pub replicates: u32,
+    /// Flux of one photon, lm.
+    pub photon_lm: f64,
+    /// Where photons began and ended.
+    pub ledger: Ledger,
+    /// Photons absorbed by each surface, escaped, killed.
+    accounts: Moments,
+    /// Of every cell, by receiver.
+    cells: Vec<Moments>,
+    /// Of each receiver's total: one entry a receiver.
+    totals: Moments,
+    /// Coordinates and exceptions.
+    pub census: Census,
+    /// Time of tracing, s.
+    pub trace_s: f64,
+    /// Why it ended.
+    pub stopped_by: StoppedBy,
+}
+
+/// A number and its standard error (one sigma), both in the unit that the function which gives it names.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its standard error from the spread of the replicates (METHOD 7); `None` where there is a single one.
+    pub standard_error: Option<f64>,
+}
+
+impl Outcome {
+    /// Nothing yet, of a scene to be traced by this plan.
+    pub(super) fn new(scene: &Scene, plan: &Plan) -> Self {
+        let surfaces = scene.geometry.surfaces().len();
+        Self {
+            plan: *plan,
+            photons: 0,
+            replicates: 0,
+            photon_lm: 0.0,
+            ledger: Ledger::new(scene.emitters.as_slice().len(), surfaces),
+            accounts: Moments::new(surfaces + 2),
+            cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
+            totals: Moments::new(scene.receivers.len()),
+            census: Census::default(),
+            trace_s: 0.0,
+            stopped_by: StoppedBy::Photons,
+        }
+    }
+
+    /// Adds a replicate: its ledger and census, and what its receivers counted.
+    pub(super) fn add(&mut self, traced: &Traced, receivers: &Receivers<'_>) {
+        let Traced { ledger, census, .. } = traced;
+        self.photons += ledger.total_emitted();
+        self.replicates += 1;
+        self.ledger.merge(ledger);
+        self.census.merge(census);
+        self.accounts.absorb(ledger.absorbed.iter().copied().chain([ledger.escaped, ledger.killed]));
+        for (receiver, moments) in self.cells.iter_mut().enumerate() {
+            moments.absorb(receivers.counts(receiver).iter());
+        }
+        self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).iter().sum()));
+    }
+
+    /// Nothing again.
+    pub(super) fn clear(&mut self) {
+        (self.photons, self.replicates, self.census) = (0, 0, Census::default());
+        self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
+        for moments in self.cells.iter_mut().chain([&mut self.accounts, &mut self.totals]) {
+            moments.clear();
+        }
+    }
+
+    /// Photons counted in the cells of each receiver, row by row from the top left, or face by face.
+    pub fn cells(&self) -> &[Moments] {
+        &self.cells
+    }
+
+    /// Photons counted on each receiver.
+    pub fn totals(&self) -> &Moments {
+        &self.totals
+    }
+
+    /// Photons absorbed by each surface, then those escaped, then those killed.
+    pub fn accounts(&self) -> &Moments {
+        &self.accounts
+    }
+
+    /// Illuminance in a cell of a receiver with this cell area, lx.
+    pub fn illuminance_lx(&self, receiver: usize, cell: usize, area_m2: f64) -> Estimate {
+        let moments = &self.cells[receiver];
+        let (sum, square) = (moments.sum[cell], moments.square[cell]);
+        let lx = self.photon_lm / area_m2;
+        Estimate {
+            value: sum as f64 * lx,
+            standard_error: standard_error_of_cell(sum, square, self.replicates).map(|e| e * lx),
+        }
+    }
+
+    /// Flux that arrived at a receiver, lm.
+    pub fn receiver_flux_lm(&self, receiver: usize) -> Estimate {
+        self.total(&self.totals, receiver)
+    }
+
+    /// Flux absorbed by a surface, lm.
+    pub fn absorbed_lm(&self, surface: usize) -> Estimate {
+        self.total(&self.accounts, surface)
+    }
+
+    /// Flux that left the scene, lm.
+    pub fn escaped_lm(&self) -> Estimate {
+        self.total(&self.accounts, self.ledger.absorbed.len())
+    }
+
+    /// Flux of photons ended by the guard, lm.
+    pub fn killed_lm(&self) -> Estimate {
+        self.total(&self.accounts, self.ledger.absorbed.len() + 1)
+    }
+
+    fn total(&self, moments: &Moments, at: usize) -> Estimate {
+        let (sum, square) = (moments.sum[at], moments.square[at]);
+        Estimate {
+            value: sum as f64 * self.photon_lm,
+            standard_error: standard_error_of_total(sum, square, self.replicates).map(|e| e * self.photon_lm),
+        }
+    }
+}

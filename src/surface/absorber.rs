@@ -1,0 +1,28 @@
+//! A black surface: ends every photon.
+//!
+//! Scene text: `type = "absorber"`.
+
+use crate::sample::coordinates::Chooser;
+use crate::surface::{Event, Incidence, Kind, Model, Throughput};
+
+/// A black surface.
+pub struct Absorber;
+
+impl Model for Absorber {
+    fn kind(&self) -> Kind {
+        Kind::Absorbing
+    }
+
+    fn requires(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn is_coloured(&self) -> bool {
+        false
+    }
+
+    #[inline]
+    fn scatter<C: Chooser, T: Throughput>(&self, _: &Incidence, _: &mut C, _: &mut T) -> Event {
+        Event::Absorbed
+    }
+}
