@@ -14,8 +14,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use caustix::error::Diagnostic;
-use caustix::plot::canvas::{Anchor, Colour, TextStyle};
+use caustix::plot::canvas::{Anchor, TextStyle};
 use caustix::plot::drawing::{Drawing, Pen, Shape};
+use caustix::report::colour::Colour;
 use caustix::scene::camera::{Bandwidth, Camera};
 
 use bias::{Row, mapped, rate, splatted};
@@ -47,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     std::fs::write(Path::new(&folder).join("picture_bias.csv"), csv(&all))?;
-    drawing(&all).write_svg(Path::new(&folder).join("picture_bias.svg"))?;
+    drawing(&all).write(&Path::new(&folder).join("picture_bias.svg"))?;
     Ok(())
 }
 

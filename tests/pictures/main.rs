@@ -9,7 +9,6 @@ mod camera_paths;
 mod camera_tabulated;
 mod camera_views;
 mod extremes;
-mod false_colour;
 mod mesh_ply;
 mod one_pixel;
 mod photon_bandwidths;

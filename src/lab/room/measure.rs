@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::lab::study::cells::areas_m2;
-use crate::lab::study::runs::processor_time;
+use crate::lab::study::runs::Clock;
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -81,6 +81,7 @@ pub(super) fn reflections(scene: &Scene) -> Result<u32> {
 pub fn measure(
     scene: &Scene,
     task: &Task,
+    clock: Clock,
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement> {
@@ -89,7 +90,7 @@ pub fn measure(
     let points = PointSet { sequence, seed, replicate: 0, number: photons }.any()?;
     let arrivals = arrivals(scene, reflections);
     let tally = WeightedReceivers::new(&scene.geometry, &scene.receivers, photons, arrivals)?;
-    let started = processor_time()?;
+    let started = clock()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
     let carried = Fixed::white(reflections);
     let traced = trace_range(scene, &scene.emitters, &points, 0..photons, carried, how, || tally.sink());
@@ -106,7 +107,7 @@ pub fn measure(
         radiance: areas_m2(&scene.receivers).iter().enumerate().map(radiance).collect(),
         escaped: traced.ledger.escaped,
         coordinates: (traced.census.dimension_mean(), traced.census.dimension_max),
-        trace_s: processor_time()?.duration_since(started).as_secs_f64(),
+        trace_s: clock()?.saturating_sub(started).as_secs_f64(),
     })
 }
 

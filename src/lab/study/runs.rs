@@ -1,10 +1,9 @@
 //! One point set of one algorithm: its errors and costs at every number of photons of a ladder.
 
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-use cpu_time::ProcessTime;
-
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::run::Algorithm;
 use crate::run::tracer::Tracer;
 use crate::tally::Receivers;
@@ -25,6 +24,10 @@ pub fn ladder(from: u64, until: u64) -> Vec<u64> {
     rungs
 }
 
+/// Tells the time by which costs are compared, from any start: that of the process's processors, which other
+/// programs don't take from.
+pub type Clock = fn() -> Result<Duration>;
+
 impl Reference<'_> {
     /// Traces one point set (R = 1: one set of N points, METHOD 7) and takes its errors against this
     /// reference at every rung of the ladder, which rises; `None` after an interrupt.
@@ -33,12 +36,13 @@ impl Reference<'_> {
     /// sequence that must know N is traced anew for each.
     ///
     /// # Errors
-    /// A sequence that cannot have this many points; a system that does not tell its processor time.
+    /// A sequence that cannot have this many points; a clock that cannot be read.
     pub fn measure(
         &self,
         algorithm: Algorithm,
         seed: u64,
         ladder: &[u64],
+        clock: Clock,
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Option<Vec<Run>>> {
@@ -54,9 +58,9 @@ impl Reference<'_> {
                 (so_far, cpu_s) = (Traced::new(scene), 0.0);
                 tracer = Tracer::new(scene, algorithm, seed, 0, photons);
             }
-            let started = processor_time()?;
+            let started = clock()?;
             let traced = tracer.trace(photons, &receivers, interrupt, progress)?;
-            cpu_s += processor_time()?.duration_since(started).as_secs_f64();
+            cpu_s += clock()?.saturating_sub(started).as_secs_f64();
             so_far.merge(&traced);
             if !so_far.complete {
                 return Ok(None);
@@ -73,11 +77,4 @@ impl Reference<'_> {
         }
         Ok(Some(runs))
     }
-}
-
-pub(crate) fn processor_time() -> Result<ProcessTime> {
-    ProcessTime::try_now().map_err(|e| {
-        let found = format!("no processor time: {e}");
-        Diagnostic::new(Kind::Io, found, "a system that tells it, for cost at equal time")
-    })
 }

@@ -6,7 +6,7 @@ use crate::surface::tabulated::face::Face;
 use crate::surface::tabulated::layer::Layer;
 
 /// Albedos up to here are 1 as far as values in f32 can tell.
-const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
+pub(crate) const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
 
 /// What an albedo is scaled to: 1, and enough beside it that mixtures of such slices don't round to less, which would be an
 /// event that has to be decided.

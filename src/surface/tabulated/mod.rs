@@ -19,7 +19,7 @@
 
 mod arrival;
 mod branch;
-mod energy;
+pub(crate) mod energy;
 mod face;
 mod layer;
 mod model;

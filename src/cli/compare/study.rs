@@ -1,13 +1,13 @@
-//! `caustix compare`: the error of every algorithm variant against a reference.
+//! Algorithm variants against a reference.
 
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use clap::Args;
-
+use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
+use crate::cli::render::{make_directory, thread_pool};
+use crate::cli::{Done, count, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::parts::{Found, Parts, from_bytes, to_bytes};
-use crate::lab::study::REVISION;
+use crate::files::atomic::write_each;
+use crate::files::parts::{Parts, from_bytes, to_bytes};
 use crate::lab::study::account::Events;
 use crate::lab::study::cells::Grids;
 use crate::lab::study::reference::{
@@ -17,13 +17,15 @@ use crate::lab::study::results;
 use crate::lab::study::results::{Run, Study, VariantResult};
 use crate::lab::study::runs::{LADDER_OCTAVES, ladder};
 use crate::lab::study::table::Table;
-use crate::report::compare::{text::text, write_files};
+use crate::plot::compare::drawing;
+use crate::report::compare::csv::csv;
+use crate::report::compare::markdown::markdown;
+use crate::report::compare::text::text;
 use crate::run::{Algorithm, MAX_PHOTONS, Variant};
 use crate::scene::Scene;
 
-use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::render::{MAX_THREADS, load, make_directory, thread_pool};
-use super::{count, exit, fail, print, say, warn, whole};
+use super::parts::{command_line, found, found_json, scene_key, store_json};
+use super::{CompareArgs, seeds};
 
 /// Photons of each run where none is named.
 const DEFAULT_PHOTONS: u64 = 1 << 20;
@@ -42,90 +44,32 @@ const FULL: [&str; 7] = [
     "qmc-inverse-reuse:independent",
 ];
 
-/// Most point sets of a variant.
-const MOST_SEEDS: u32 = 1024;
-
-/// Arguments of `caustix compare`.
-#[derive(Debug, Args)]
-pub struct CompareArgs {
-    /// Scene file; the built-in scene if absent.
-    pub scene: Option<PathBuf>,
-    /// Directory for the results and, in `parts/`, for what is finished: the same command goes on from there.
-    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
-    pub output: PathBuf,
-    /// Photons of the largest run of each variant and seed [default: 2^20].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub photons: Option<String>,
-    /// Variants, like mc,qmc,qmc:table,qmc-inverse-reuse:halton [default: the paper's four].
-    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
-    pub variants: Vec<String>,
-    /// Photons of the reference [default: 100 times N].
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    pub reference_photons: Option<String>,
-    /// Cells along each side of the grids that errors are measured on [default: 48,128,256].
-    #[arg(long, value_name = "K,K,...", value_delimiter = ',')]
-    pub cells: Vec<u32>,
-    /// More variants: every form of rejection, other solvers and sequences. In a scene with `[compare]`: 10^7 photons.
-    #[arg(long)]
-    pub full: bool,
-    /// The least number of photons of which errors are taken; from there powers of two up to N [default: N / 256].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub from: Option<String>,
-    /// Point sets of each variant.
-    #[arg(long, value_name = "S", default_value = "4", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MOST_SEEDS as u64 }>)]
-    pub seeds: u32,
-    /// The first seed; the others follow it.
-    #[arg(long, value_name = "K", default_value = "1", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
-    pub seed: u64,
-    /// Threads [default: all cores]. The errors do not depend on it.
-    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_THREADS as u64 }>)]
-    pub threads: Option<u32>,
-    /// No progress bar and no table.
-    #[arg(long)]
-    pub quiet: bool,
-}
-
-/// Runs the subcommand; the exit code.
-pub fn run(args: &CompareArgs) -> u8 {
-    match compare(args) {
-        Ok(code) => code,
-        Err(errors) => fail(&errors),
-    }
-}
-
-fn compare(args: &CompareArgs) -> std::result::Result<u8, Vec<Diagnostic>> {
-    let one = |e: Diagnostic| vec![e];
-    let (scene, _) = load(args.scene.as_deref())?;
-    warn(&scene.warnings);
-    if scene.compared_reflections.is_some() {
-        return super::compare_room::compare(args, &scene);
-    }
-    let asked = Asked::new(args, &scene).map_err(one)?;
-    make_directory(&args.output).map_err(one)?;
+/// Makes the study as far as it gets; the exit code.
+pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
+    let asked = Asked::new(args, scene)?;
+    make_directory(&args.output)?;
     catch_interrupts();
-    let pool = thread_pool(args.threads).map_err(one)?;
+    let pool = thread_pool(args.threads)?;
     let progress = Progress::new(args.quiet, asked.work());
-    let job = Job { scene: &scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
-    let study = pool.install(|| job.study(args)).map_err(one)?;
+    let job = Job { scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
+    let study = pool.install(|| job.study(args))?;
     progress.finish();
-    finish(args, &job, study.as_ref())
-}
-
-/// Writes what there is and says how it stands.
-fn finish(
-    args: &CompareArgs,
-    job: &Job<'_>,
-    study: Option<&Study>,
-) -> std::result::Result<u8, Vec<Diagnostic>> {
-    if let Some(study) = study {
+    if let Some(study) = &study {
         let table = Table::new(study);
-        let files = write_files(study, &table, &args.output);
+        let (_, errors) = write_each(
+            &args.output,
+            &[
+                ("compare.csv", csv(study, &table)),
+                ("compare.md", markdown(study, &table)),
+                ("compare.svg", drawing(study, &table).to_svg()),
+            ],
+        );
         if !args.quiet {
             print(&text(study, &table));
             print(&format!("written to {}\n", args.output.display()));
         }
-        if !files.errors.is_empty() {
-            return Err(files.errors);
+        if !errors.is_empty() {
+            return Err(errors.into());
         }
     }
     if !INTERRUPTED.load(Ordering::Relaxed) {
@@ -197,15 +141,6 @@ impl<'s> Asked<'s> {
         let of = |a: &Algorithm| self.seeds_of(*a).len() as u64 * self.photons_of(*a);
         self.algorithms.iter().map(of).sum::<u64>().saturating_add(self.reference.photons())
     }
-}
-
-/// The seeds asked for.
-pub(super) fn seeds(args: &CompareArgs) -> Result<Vec<u64>> {
-    if !(1..=MOST_SEEDS).contains(&args.seeds) {
-        let found = format!("--seeds {}", args.seeds);
-        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MOST_SEEDS} seeds")));
-    }
-    Ok((0..u64::from(args.seeds)).map(|k| args.seed.wrapping_add(k)).collect())
 }
 
 fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
@@ -345,52 +280,16 @@ impl Job<'_> {
     ) -> Result<Option<Vec<Run>>> {
         let asked = &self.asked;
         let key = format!("{reference_key}\nrun: {} seed {seed}, N {:?}", algorithm.name(), asked.ladder);
-        let found = found(&self.parts, self.progress, "run", &key);
-        if let Some(found) = found.and_then(|bytes| serde_json::from_slice(&bytes).ok()) {
+        if let Some(found) = found_json(&self.parts, self.progress, "run", &key) {
             self.progress.add(asked.photons_of(algorithm));
             return Ok(Some(found));
         }
         let progress = |n| self.progress.add(n);
-        let traced = reference.measure(algorithm, seed, &asked.ladder, &INTERRUPTED, &progress)?;
+        let traced =
+            reference.measure(algorithm, seed, &asked.ladder, processor_time, &INTERRUPTED, &progress)?;
         if let Some(traced) = &traced {
-            let bytes = serde_json::to_vec_pretty(traced).map_err(|e| {
-                Diagnostic::new(Kind::Io, format!("\"{e}\" while writing a run"), "a run as text")
-            })?;
-            self.parts.store("run", &key, &bytes)?;
+            store_json(&self.parts, "run", &key, traced)?;
         }
         Ok(traced)
     }
-}
-
-/// All that a scene's photons depend on.
-pub(super) fn scene_key(scene: &Scene) -> String {
-    let identity = &scene.identity;
-    let version = env!("CARGO_PKG_VERSION");
-    let mut key = format!("caustix {version} revision {REVISION}\nscene {}", identity.sha256);
-    for (file, sha256) in &identity.files {
-        key.push_str(&format!("\nfile {sha256} {file}"));
-    }
-    key
-}
-
-/// A part that is there and whole; one that is damaged is told, and made again.
-pub(super) fn found(parts: &Parts, progress: &Progress, kind: &str, key: &str) -> Option<Vec<u8>> {
-    match parts.load(kind, key) {
-        Found::Whole(content) => Some(content),
-        Found::Missing => None,
-        Found::Damaged(diagnostic) => {
-            progress.aside(|| say(&format!("warning: {diagnostic}")));
-            None
-        }
-    }
-}
-
-/// The command as it was typed, without the folder that the program lies in.
-pub(super) fn command_line() -> String {
-    let quoted = |word: String| {
-        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:^=+".contains(c);
-        if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{word}'") }
-    };
-    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
-    std::iter::once("caustix".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }
