@@ -310,14 +310,15 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn a_study_in_small() {
     let scene = room("", 4);
-    let options = Options { ladder: vec![500, 2_000, 16_000], seeds: vec![1, 2] };
+    let options = Options::new(vec![500, 2_000, 16_000], vec![1, 2]).unwrap();
     let photons = std::sync::atomic::AtomicU64::new(0);
     let count = |n| {
         photons.fetch_add(n, std::sync::atomic::Ordering::Relaxed);
     };
+    let tasks = options.tasks();
     let of = |task: &Task| measure(&scene, task, clock, &AtomicBool::new(false), &count).unwrap();
-    let found =
-        RoomStudy::new(&scene, &options, &options.tasks().iter().map(of).collect::<Vec<_>>()).unwrap();
+    let mut measurements: Vec<Measurement> = tasks.iter().map(of).collect();
+    let found = RoomStudy::new(&scene, &options, &measurements).unwrap();
     assert_eq!(photons.into_inner(), options.photons());
     assert_eq!(options.photons(), 6 * 18_500);
     assert!(found.is_closed());
@@ -325,7 +326,8 @@ fn a_study_in_small() {
     assert_eq!(found.between().len(), 10);
     for d in found.deviations() {
         assert!(d.value.mean > 0.0 && d.value.mean < 0.3, "{d:?}");
-        assert_eq!(d.value.spread.is_some(), d.sequence == 0);
+        assert_eq!(d.value.spread.is_some(), d.sequences[0] == 0);
+        assert!(d.sequences[0] == d.sequences[1] && d.photons[0] < d.photons[1], "{d:?}");
     }
     let rows = found.rows();
     assert_eq!(rows.len(), SEQUENCES.len() * 3);
@@ -335,8 +337,6 @@ fn a_study_in_small() {
         assert!(row.ratio_equal_n >= 1.0 || row.photons == 500, "{row:?}");
     }
     // Finished measurements in any order make the same study.
-    let mut measurements: Vec<Measurement> =
-        (0..SEQUENCES.len()).flat_map(|s| found.runs(s).iter().flatten().cloned()).collect();
     measurements.reverse();
     assert_eq!(RoomStudy::new(&scene, &options, &measurements).unwrap(), found);
     measurements.pop();
@@ -368,6 +368,13 @@ fn a_study_in_small() {
 
 #[test]
 fn what_a_study_needs_is_asked_for() {
+    for (ladder, seeds) in
+        [(vec![], vec![1]), (vec![5], vec![1]), (vec![5, 5], vec![1]), (vec![5, 6], vec![])]
+    {
+        assert!(Options::new(ladder, seeds).is_err());
+    }
+    assert_eq!(Options::paper_ladder(false), [10_000, 100_000, 1_000_000]);
+    assert_eq!(Options::paper_ladder(true)[3..], [10_000_000]);
     let without = sphere("type = \"lambertian\"\nreflectance = 0.5", "");
     let error = measure(&without, &task(Sequence::Sobol, 0, 10), clock, &AtomicBool::new(false), &|_| {})
         .unwrap_err();
