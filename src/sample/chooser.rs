@@ -64,7 +64,8 @@ pub trait Chooser {
         Reusable::fresh((self.uniform(purpose) * TWO_TO_64) as u64)
     }
 
-    /// A choice among more than one outcome on `u`; a spent coordinate is replaced first.
+    /// A choice among more than one outcome on `u`; a spent coordinate is replaced first. Where a coordinate does not go on
+    /// after a choice, it is spent then.
     #[inline]
     fn choose_by<R>(
         &mut self,
@@ -75,7 +76,11 @@ pub trait Chooser {
         if u.is_spent() {
             *u = self.reusable(purpose);
         }
-        choice(u)
+        let chosen = choice(u);
+        if !self.reuses() {
+            u.spend();
+        }
+        chosen
     }
 
     /// An event of `table` on `u`, by [`Self::choose_by`] where there is more than one.

@@ -99,28 +99,6 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
     }
 
     #[inline]
-    fn choose_by<R>(
-        &mut self,
-        u: &mut Reusable,
-        purpose: Purpose,
-        choice: impl FnOnce(&mut Reusable) -> R,
-    ) -> R {
-        if u.is_spent() {
-            *u = self.draw_reusable(purpose);
-        }
-        let chosen = choice(u);
-        if !self.reuse {
-            u.spend();
-        }
-        chosen
-    }
-
-    #[inline]
-    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
-        to_unit_f64(if u.is_spent() { self.draw(purpose) } else { u.bits() })
-    }
-
-    #[inline]
     fn reuses(&self) -> bool {
         self.reuse
     }
