@@ -94,7 +94,7 @@ pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 pub use emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emits, Emitter, Isotropic, Panel, Photometric,
 };
-pub use files::scene_toml::read_scene;
+pub use files::scene_toml::{SceneFile, built_in as built_in_scene, read as read_scene_file, read_scene};
 pub use geometry::{
     Facing, Formula, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing, Sphere,
     Surface, Transform, Wave, box_mesh,
@@ -120,6 +120,11 @@ pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
 pub use report::statistics::ReceiverStatistics;
 pub use report::text::summary;
+// Studies:
+pub use lab::certificate::{Certificate, Judge};
+pub use lab::study::cells::Grids;
+pub use lab::study::norms::Errors;
+pub use lab::study::reference::{Reference, ReferencePlan, trace_replicate as trace_reference};
 // Pictures:
 pub use picture::{AnyPicture, Picture, PictureSummary, Watch, trace_picture};
 
