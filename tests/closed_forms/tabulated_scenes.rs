@@ -31,10 +31,6 @@ fn diffuser(albedo: f64, step: f64, energy: Energy) -> Material {
     tabulated(&table, &Options { energy, ..Options::default() })
 }
 
-fn surface(name: &str, shape: Shape, bsdf: Material) -> (Surface, Material) {
-    (Surface { name: name.into(), shape }, bsdf)
-}
-
 /// A lamp in a box with a shelf, both of one material each; every wall of the shelf is a receiver of 4 x 4 cells.
 fn room(walls: Material, shelf: Material) -> Scene {
     let box_shape = Shape::Mesh(box_mesh(DVec3::splat(-1.0), DVec3::new(1.0, 1.2, 0.9)).unwrap());
