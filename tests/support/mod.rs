@@ -10,6 +10,7 @@ pub mod data;
 pub mod density;
 pub mod given;
 pub mod judge;
+pub mod lamp;
 pub mod local;
 pub mod maps;
 pub mod pictures;

@@ -6,10 +6,10 @@ use crate::surface::tabulated::face::Face;
 use crate::surface::tabulated::layer::Layer;
 
 /// Albedos up to here are 1 as far as values in f32 can tell.
-const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
+pub(crate) const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
 
-/// What an albedo is scaled to: 1, and enough beside it that mixtures of such slices don't round to less, which would be an
-/// event that has to be decided.
+/// What an albedo is scaled to: 1, and enough beside it that mixtures of such slices don't round to less,
+/// which would be an event that has to be decided.
 const TO_ONE: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 /// An incidence at which a surface sends back and lets through more than it gets.
@@ -20,8 +20,8 @@ struct Excess {
     phi: f64,
 }
 
-/// Sees to it that no channel of either face scatters more than it gets, at any incidence: the albedos mix linearly, so the
-/// table's own angles are enough.
+/// Sees to it that no channel of either face scatters more than it gets, at any incidence: the albedos mix
+/// linearly, so the table's own angles are enough.
 ///
 /// # Errors
 /// [`Energy::Refuse`] and an albedo above 1.
