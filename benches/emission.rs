@@ -1,5 +1,5 @@
-//! Nanoseconds per emission, one thread: tables of three sizes under three sequences; and the cell equation alone, by the
-//! project's solver and by those of the `roots` crate on the same function.
+//! Nanoseconds per emission, one thread: tables of three sizes under three sequences; and the cell equation alone, by
+//! each solver (benches/solvers.rs compares them with others).
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use std::hint::black_box;
@@ -23,7 +23,7 @@ use criterion::{
 };
 use glam::DVec3;
 
-/// Emissions, or roots, of one iteration.
+/// Emissions, or solutions, of one iteration.
 const BATCH: u64 = 1 << 12;
 
 fn own(name: &str) -> Photometry {

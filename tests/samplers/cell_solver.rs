@@ -1,5 +1,6 @@
-//! The solver of the cell equation (paper, eq. 8) against an oracle that shares nothing with it: the distribution function by
-//! Gauss-Legendre quadrature of the density, its root by Brent's method of the `roots` crate.
+//! The solver of the cell equation (paper, eq. 8) against an oracle that shares nothing with it: the
+//! distribution function by Gauss-Legendre quadrature of the density, its root by Brent's method of the
+//! `roots` crate.
 
 use std::f64::consts::PI;
 
@@ -77,9 +78,10 @@ fn roots_agree_with_brents_method_on_the_quadrature() {
     assert!(compared > 6000, "{compared}");
 }
 
-/// A step that the default solver takes unseen, on Taylor's theorem alone, keeps the promise of all: |F(s) - u| <= 2^-46, and the
-/// rounding of F itself, some units of 2^-52. Near a pole, where the density is far from linear, and across edges of zero, where it
-/// rises steeply, such steps are long; the quadrature shares no formula with the bound.
+/// A step that the default solver takes unseen, on Taylor's theorem alone, keeps the promise of all: |F(s) -
+/// u| <= 2^-46, and the rounding of F itself, some units of 2^-52. Near a pole, where the density is far from
+/// linear, and across edges of zero, where it rises steeply, such steps are long; the quadrature shares no
+/// formula with the bound.
 #[test]
 fn every_solver_keeps_the_promise_of_2_to_minus_46() {
     let promise = 2f64.powi(-46) + 16.0 * f64::EPSILON;
