@@ -48,6 +48,9 @@
 //! `cli` (default): the command `caustix`. `plots` (default): drawings, maps as PNG. Without either the library reads, traces
 //! and writes EXR, CSV, PLY and JSON.
 
+// What only the command uses is dead without it; the build with the command denies dead code.
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
+
 // In import order: a room uses only rooms before it (tests/house checks).
 #[path = "."]
 mod rooms {
