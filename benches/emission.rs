@@ -1,5 +1,5 @@
-//! Nanoseconds per emission, one thread: tables of three sizes under three sequences; and the cell equation alone, by the
-//! project's solver and by those of the `roots` crate on the same function.
+//! Nanoseconds per emission, one thread: tables of three sizes under three sequences; and the cell equation alone, by
+//! each solver (benches/solvers.rs compares them with others).
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use std::hint::black_box;
@@ -22,9 +22,8 @@ use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };
 use glam::DVec3;
-use roots::{SimpleConvergency, find_root_brent, find_root_secant};
 
-/// Emissions, or roots, of one iteration.
+/// Emissions, or solutions, of one iteration.
 const BATCH: u64 = 1 << 12;
 
 fn own(name: &str) -> Photometry {
@@ -99,17 +98,6 @@ fn cells() -> Vec<(Row, Cell)> {
     rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, c).unwrap()))).collect()
 }
 
-/// F(s) of the cell equation (8), in the place s in the cell.
-fn mass(row: &Row, cell: &Cell, s: f64) -> f64 {
-    let [a1, a2, b1, b2] = cell.corners;
-    let (a, b) = (a1 + a2, b1 + b2);
-    let (sin, cos) = s.sin_cos();
-    let (row_sin, row_cos) = row.theta.sin_cos();
-    let constant = row_sin * sin + row_cos * (1.0 - cos);
-    let linear = row_sin * (s * sin + cos - 1.0) + row_cos * (sin - s * cos);
-    a * constant + (b - a) / row.width * linear
-}
-
 fn cell_equation(criterion: &mut Criterion) {
     let cells = cells();
     let points = IndependentPoints::new(2, 0);
@@ -124,16 +112,6 @@ fn cell_equation(criterion: &mut Criterion) {
     for method in Solver::ALL {
         solver(method.name(), &|row, cell, u| cell.sample_theta(row, u, method).s);
     }
-    // The width of a cell is of order 0.1, so the one absolute tolerance of `roots` serves as a relative one here.
-    let rule = || SimpleConvergency { eps: 1e-14, max_iter: 100 };
-    let residual =
-        |row: &Row, cell: &Cell, s: f64, u: f64| mass(row, cell, s) / mass(row, cell, row.width) - u;
-    solver("roots: Brent", &|row, cell, u| {
-        find_root_brent(0.0, row.width, |s| residual(row, cell, s, u), &mut rule()).unwrap_or(f64::NAN)
-    });
-    solver("roots: secant", &|row, cell, u| {
-        find_root_secant(0.0, row.width, |s| residual(row, cell, s, u), &mut rule()).unwrap_or(f64::NAN)
-    });
 }
 
 criterion_group!(benches, emission, cell_equation);

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::frame::{self, AimFrame};
-use super::{DirectLight, Emission, Emits, EmitterKind};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
+use crate::geometry::COORDINATE;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
@@ -60,7 +60,7 @@ impl<S: LitShape> AreaLight<S> {
     /// # Errors
     /// A position or flux out of range or not a number.
     pub fn new(centre: DVec3, frame: AimFrame, shape: S, flux_lm: f64) -> Result<Self, Invalid> {
-        let (centre, flux_lm) = (frame::place(centre)?, frame::flux(flux_lm)?);
+        let (centre, flux_lm) = (COORDINATE.vector("position", centre)?, FLUX.check("flux_lm", flux_lm)?);
         Ok(Self { centre, axes: frame.axes(), shape, flux_lm })
     }
 

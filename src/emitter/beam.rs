@@ -8,10 +8,10 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::disc::{circle, unit_disc};
-use super::frame::{self, AimFrame, length};
 use super::panel::SQUARE;
-use super::{DirectLight, Emission, Emits, EmitterKind};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
+use crate::geometry::{COORDINATE, LENGTH};
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
@@ -52,18 +52,18 @@ impl Beam {
     /// A position, size or flux out of range or not a number.
     pub fn new(centre: DVec3, frame: AimFrame, section: BeamSection, flux_lm: f64) -> Result<Self, Invalid> {
         let ([x, y], is_round) = match section {
-            BeamSection::Disc { radius } => ([length("radius", radius)?; 2], true),
+            BeamSection::Disc { radius } => ([LENGTH.check("radius", radius)?; 2], true),
             BeamSection::Rectangle { width, height } => {
-                ([0.5 * length("size", width)?, 0.5 * length("size", height)?], false)
+                ([0.5 * LENGTH.check("size", width)?, 0.5 * LENGTH.check("size", height)?], false)
             }
         };
         let axes = frame.axes();
         Ok(Self {
-            centre: frame::place(centre)?,
+            centre: COORDINATE.vector("position", centre)?,
             direction: frame.aim(),
             half_axes: [axes.x_axis * x, axes.y_axis * y],
             is_round,
-            flux_lm: frame::flux(flux_lm)?,
+            flux_lm: FLUX.check("flux_lm", flux_lm)?,
         })
     }
 

@@ -6,8 +6,8 @@
 use std::f64::consts::PI;
 
 use super::area::LitShape;
-use super::frame::length;
 use crate::error::Invalid;
+use crate::geometry::LENGTH;
 use crate::math::trig::sin_cos;
 
 /// Corners of the polygon that stands for a circle: 0.12 % of the radius within it.
@@ -42,7 +42,7 @@ impl Disc {
     /// # Errors
     /// A radius out of range or not a number.
     pub fn new(radius_m: f64) -> Result<Self, Invalid> {
-        Ok(Self { radius_m: length("radius", radius_m)? })
+        Ok(Self { radius_m: LENGTH.check("radius", radius_m)? })
     }
 }
 

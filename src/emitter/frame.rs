@@ -1,10 +1,9 @@
-//! Where an emitter points: the directions `aim` and `up` of the scene file; and the ranges of what emitters have in common.
+//! Where an emitter points: the directions `aim` and `up` of the scene file.
 
 use glam::{DMat3, DVec3};
 
 use crate::error::Invalid;
 use crate::error::invalid::Interval;
-use crate::geometry::{COORDINATE, LENGTH};
 use crate::math::frame::{orthogonal_part, unit};
 
 /// Fluxes of emitters, lm.
@@ -49,21 +48,6 @@ impl AimFrame {
     pub(super) fn axes(&self) -> DMat3 {
         DMat3::from_cols(self.aim.cross(self.up), self.up, self.aim)
     }
-}
-
-/// A luminous flux, lm.
-pub(super) fn flux(flux_lm: f64) -> Result<f64, Invalid> {
-    FLUX.check("flux_lm", flux_lm)
-}
-
-/// A place, m.
-pub(super) fn place(position: DVec3) -> Result<DVec3, Invalid> {
-    COORDINATE.vector("position", position)
-}
-
-/// A length, m.
-pub(super) fn length(what: &'static str, metres: f64) -> Result<f64, Invalid> {
-    LENGTH.check(what, metres)
 }
 
 #[cfg(test)]

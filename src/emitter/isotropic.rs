@@ -6,8 +6,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{DirectLight, Emission, Emits, EmitterKind, frame};
+use super::{DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
+use crate::geometry::COORDINATE;
 use crate::math::trig::sin_cos;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
@@ -27,7 +28,10 @@ impl Isotropic {
     /// # Errors
     /// A position or flux out of range or not a number.
     pub fn new(position: DVec3, flux_lm: f64) -> Result<Self, Invalid> {
-        Ok(Self { position: frame::place(position)?, flux_lm: frame::flux(flux_lm)? })
+        Ok(Self {
+            position: COORDINATE.vector("position", position)?,
+            flux_lm: FLUX.check("flux_lm", flux_lm)?,
+        })
     }
 }
 

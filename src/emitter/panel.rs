@@ -6,9 +6,9 @@
 use std::f64::consts::PI;
 
 use super::area::LitShape;
-use super::frame::length;
 use super::spherical_rectangle::SphericalRectangle;
 use crate::error::Invalid;
+use crate::geometry::LENGTH;
 
 /// Solid angle, sr, from which on a panel is sampled by it: four angles that sum to it are each right to some 1e-15.
 const LEAST_SOLID_ANGLE: f64 = 1e-3;
@@ -29,7 +29,7 @@ impl Panel {
     /// # Errors
     /// A size out of range or not a number.
     pub fn new([width, height]: [f64; 2]) -> Result<Self, Invalid> {
-        Ok(Self { size_m: [length("size", width)?, length("size", height)?] })
+        Ok(Self { size_m: [LENGTH.check("size", width)?, LENGTH.check("size", height)?] })
     }
 
     /// The place at x and y in halves of the size: -1 to 1.

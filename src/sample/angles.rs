@@ -1,8 +1,8 @@
-//! The angles of a table on the sphere: rows between polar angles, columns between azimuths, and the cell that holds a
-//! direction.
+//! The angles of a table on the sphere: rows between polar angles, columns between azimuths, and the cell
+//! that holds a direction.
 //!
-//! Measure: solid angle, sin(theta) dtheta dphi; theta is counted from the pole, where that weight vanishes. Between nodes
-//! values are bilinear in theta and phi (METHOD 3, eq. 7).
+//! Measure: solid angle, sin(theta) dtheta dphi; theta is counted from the pole, where that weight vanishes.
+//! Between nodes values are bilinear in theta and phi (METHOD 3, eq. 7).
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,8 @@ use crate::math::trig::{InCell, sin_cos};
 /// Most nodes of a table: 16 times the largest one seen in the wild (721 x 361).
 pub const MAX_NODES: usize = 1 << 22;
 
-/// Rounding that angles of a table and angles of directions are allowed, relative to the largest angle involved.
+/// Rounding that angles of a table and angles of directions are allowed, relative to the largest angle
+/// involved.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A band of the sphere between two polar angles.
@@ -157,8 +158,8 @@ impl Angles {
         ([first.theta, (last.theta + last.width).min(PI)], [left.phi, right.phi + right.width])
     }
 
-    /// The place of (theta, phi), phi up to full turns; `None` outside the table. An edge between two cells belongs to the
-    /// second of them; the outer edges belong to the table, with the rounding of an angle.
+    /// The place of (theta, phi), phi up to full turns; `None` outside the table. An edge between two cells
+    /// belongs to the second of them; the outer edges belong to the table, with the rounding of an angle.
     pub fn locate(&self, theta: f64, phi: f64) -> Option<Located> {
         let (first, turn) = (self.columns[0].phi, self.turn());
         let turns = libm::floor((phi - first) / (2.0 * PI));

@@ -1,8 +1,9 @@
-//! One cell of a table on the sphere: its flux, and sampling by inverse functions (METHOD 3; paper eqs. 7 and 8).
+//! One cell of a table on the sphere: its flux, and sampling by inverse functions (METHOD 3; paper eqs. 7 and
+//! 8).
 //!
-//! A cell is [theta1, theta1 + dt] x [phi1, phi1 + dp] with values A1, A2 at theta1 (at phi1 and phi2) and B1, B2 at the
-//! far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. The marginal of theta is in
-//! [`super::marginal`]; the conditional of phi is a quadratic.
+//! A cell is [theta1, theta1 + dt] x [phi1, phi1 + dp] with values A1, A2 at theta1 (at phi1 and phi2) and
+//! B1, B2 at the far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. The marginal
+//! of theta is in [`super::marginal`]; the conditional of phi is a quadratic.
 
 use glam::DVec3;
 
@@ -84,7 +85,8 @@ impl Cell {
         l * (1.0 - x) + r * x
     }
 
-    /// The point for the coordinates of theta and phi, by inverse functions: (point, theta - theta1, fraction of the column).
+    /// The point for the coordinates of theta and phi, by inverse functions: (point, theta - theta1, fraction
+    /// of the column).
     #[inline]
     pub(super) fn place(
         &self,
@@ -113,8 +115,9 @@ mod tests {
     /// The part of pi that an f64 leaves out.
     const PI_LOW: f64 = 1.224_646_799_147_353_2e-16;
 
-    /// F(s) by Gauss-Legendre quadrature of the density itself: shares no formula with the solver. The sine near the
-    /// south pole is taken from pi - theta in two parts, so it is right to full relative precision there.
+    /// F(s) by Gauss-Legendre quadrature of the density itself: shares no formula with the solver. The sine
+    /// near the south pole is taken from pi - theta in two parts, so it is right to full relative precision
+    /// there.
     fn mass_by_quadrature(theta1: f64, dt: f64, a: f64, b: f64, s: f64) -> f64 {
         const X: [f64; 4] = [
             0.183_434_642_495_649_8,

@@ -52,19 +52,21 @@ impl Purpose {
 
 /// What makes the decisions of a walk: a photon's coordinates, or a script.
 pub trait Chooser {
-    /// Whether an event of this probability happens. Probabilities at or beyond 0 and 1 decide themselves and cost
-    /// nothing.
+    /// Whether an event of this probability happens. Probabilities at or beyond 0 and 1 decide themselves and
+    /// cost nothing.
     fn happens(&mut self, probability: f64) -> bool;
     /// A continuous coordinate in [0, 1).
     fn uniform(&mut self, purpose: Purpose) -> f64;
 
-    /// A coordinate that serves discrete choices first ([`Self::choose_by`]) and as a continuous one last ([`Self::rest`]).
+    /// A coordinate that serves discrete choices first ([`Self::choose_by`]) and as a continuous one last
+    /// ([`Self::rest`]).
     #[inline]
     fn reusable(&mut self, purpose: Purpose) -> Reusable {
         Reusable::fresh((self.uniform(purpose) * TWO_TO_64) as u64)
     }
 
-    /// A choice among more than one outcome on `u`; a spent coordinate is replaced first.
+    /// A choice among more than one outcome on `u`; a spent coordinate is replaced first. Where a coordinate
+    /// does not go on after a choice, it is spent then.
     #[inline]
     fn choose_by<R>(
         &mut self,
@@ -75,7 +77,11 @@ pub trait Chooser {
         if u.is_spent() {
             *u = self.reusable(purpose);
         }
-        choice(u)
+        let chosen = choice(u);
+        if !self.reuses() {
+            u.spend();
+        }
+        chosen
     }
 
     /// An event of `table` on `u`, by [`Self::choose_by`] where there is more than one.
@@ -99,14 +105,15 @@ pub trait Chooser {
         true
     }
 
-    /// A choice among more than one outcome: one more of the photon's events, where these share a coordinate; else on a
-    /// coordinate of this purpose.
+    /// A choice among more than one outcome: one more of the photon's events, where these share a coordinate;
+    /// else on a coordinate of this purpose.
     #[inline]
     fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
         choice(&mut self.reusable(purpose))
     }
 
-    /// What is left of a coordinate after a choice of this probability, for a last use; a fresh one where too little is.
+    /// What is left of a coordinate after a choice of this probability, for a last use; a fresh one where too
+    /// little is.
     #[inline]
     fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
         if probability < SMALLEST_SPAN { self.uniform(purpose) } else { left }

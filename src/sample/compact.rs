@@ -1,8 +1,9 @@
-//! Many tabulated densities over the same angles, held compactly: those of a scattering table, one for every incidence.
+//! Many tabulated densities over the same angles, held compactly: those of a scattering table, one for every
+//! incidence.
 //!
-//! The densities are those of [`super::grid::Grid`], sampled by the same cell equation (METHOD 3). There may be thousands, so
-//! of a slice no cells are kept: its nodes as f32 (in units of its largest) and the cells' fractions ([`Shares`]), 16 bytes a
-//! node in all. The rest of a cell is made when it is chosen.
+//! The densities are those of [`super::grid::Grid`], sampled by the same cell equation (METHOD 3). There may
+//! be thousands, so of a slice no cells are kept: its nodes as f32 (in units of its largest) and the cells'
+//! fractions ([`Shares`]), 16 bytes a node in all. The rest of a cell is made when it is chosen.
 
 use super::angles::{Angles, Located};
 use super::cell::{Cell, GridPoint};
@@ -36,10 +37,12 @@ struct Slice {
 }
 
 impl CompactGrids {
-    /// No slices yet, over these angles (radians, rising; polar within [0, pi], azimuth spanning at most a full turn).
+    /// No slices yet, over these angles (radians, rising; polar within [0, pi], azimuth spanning at most a
+    /// full turn).
     ///
     /// # Errors
-    /// Fewer than two angles of either kind, more pairs than a table may have, angles that do not rise or leave their range.
+    /// Fewer than two angles of either kind, more pairs than a table may have, angles that do not rise or
+    /// leave their range.
     pub fn new(polar: &[f64], azimuth: &[f64]) -> Result<Self> {
         let angles = Angles::new(polar, azimuth)?;
         Ok(Self {
@@ -58,11 +61,12 @@ impl CompactGrids {
         self.slices.reserve_exact(slices);
     }
 
-    /// Adds a slice of values (any unit) at the nodes, `values[i * azimuths + j]`, and returns its index. A slice of zeros
-    /// is allowed: it has the integral zero and must not be sampled.
+    /// Adds a slice of values (any unit) at the nodes, `values[i * azimuths + j]`, and returns its index. A
+    /// slice of zeros is allowed: it has the integral zero and must not be sampled.
     ///
     /// # Errors
-    /// Another number of values than nodes, values that are negative or not finite, an integral that is not finite.
+    /// Another number of values than nodes, values that are negative or not finite, an integral that is not
+    /// finite.
     pub fn push(&mut self, values: &[f64]) -> Result<usize> {
         let largest = self.angles.largest(values)?;
         let unit = if largest > 0.0 { largest } else { 1.0 };
@@ -108,7 +112,8 @@ impl CompactGrids {
         self.slices[slice].integral *= factor;
     }
 
-    /// Proposals per accepted direction: (inside a cell chosen by flux, over the range of the table); 0 for a slice of zeros.
+    /// Proposals per accepted direction: (inside a cell chosen by flux, over the range of the table); 0 for a
+    /// slice of zeros.
     pub fn proposals(&self, slice: usize) -> (f64, f64) {
         self.slices[slice].proposals
     }
@@ -134,9 +139,9 @@ impl CompactGrids {
         }
     }
 
-    /// By inverse functions. Where a coordinate goes on after a choice, one serves for the row and theta, the other for the
-    /// column and phi: points that are evenly spread over the square are so over the lobe. Else the cell has a coordinate of its
-    /// own.
+    /// By inverse functions. Where a coordinate goes on after a choice, one serves for the row and theta, the
+    /// other for the column and phi: points that are evenly spread over the square are so over the lobe. Else
+    /// the cell has a coordinate of its own.
     #[inline(always)]
     fn invert<C: Chooser>(
         &self,
@@ -173,8 +178,8 @@ impl CompactGrids {
         (point, Located { row, column, s, x })
     }
 
-    /// By rejection. A photon on its way cannot go on with another point of the sequence, so of the two ways against the table's
-    /// largest value both take the photon's next coordinates.
+    /// By rejection. A photon on its way cannot go on with another point of the sequence, so of the two ways
+    /// against the table's largest value both take the photon's next coordinates.
     #[inline(never)]
     fn reject<C: Chooser>(&self, slice: usize, rejection: Rejection, chooser: &mut C) -> GridPoint {
         let mut u = chooser.reusable(Purpose::Scatter);

@@ -1,8 +1,9 @@
 //! A photon's coordinates: handed out in order of use, labelled, counted.
 //!
-//! The number of coordinates a photon consumes is its constructive dimension (METHOD 1). A coordinate is counted when it
-//! is drawn; an event with one possible outcome draws none. With renormalisation all discrete events of a photon
-//! share one coordinate until fewer than 24 of its 64 bits are left; without, each draws its own.
+//! The number of coordinates a photon consumes is its constructive dimension (METHOD 1). A coordinate is
+//! counted when it is drawn; an event with one possible outcome draws none. With renormalisation all discrete
+//! events of a photon share one coordinate until fewer than 24 of its 64 bits are left; without, each draws
+//! its own.
 
 use super::choose::Reusable;
 use super::method::Sampling;
@@ -99,28 +100,6 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
     }
 
     #[inline]
-    fn choose_by<R>(
-        &mut self,
-        u: &mut Reusable,
-        purpose: Purpose,
-        choice: impl FnOnce(&mut Reusable) -> R,
-    ) -> R {
-        if u.is_spent() {
-            *u = self.draw_reusable(purpose);
-        }
-        let chosen = choice(u);
-        if !self.reuse {
-            u.spend();
-        }
-        chosen
-    }
-
-    #[inline]
-    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
-        to_unit_f64(if u.is_spent() { self.draw(purpose) } else { u.bits() })
-    }
-
-    #[inline]
     fn reuses(&self) -> bool {
         self.reuse
     }
@@ -197,8 +176,8 @@ mod tests {
     fn a_spent_coordinate_is_replaced_before_fewer_than_24_bits_are_used() {
         let points = IndependentPoints::new(2, 0);
         let mut c = Coordinates::new(&points, 9, true);
-        // Each fair event costs one bit: events 1 to 41 run on the first coordinate (after 40 just 24 bits remain,
-        // which is still allowed), the 42nd draws the second.
+        // Each fair event costs one bit: events 1 to 41 run on the first coordinate (after 40 just 24 bits
+        // remain, which is still allowed), the 42nd draws the second.
         for event in 1..=41 {
             c.happens(0.5);
             assert_eq!(c.drawn(), 1, "event {event}");
@@ -227,8 +206,8 @@ mod tests {
 
     #[test]
     fn sixty_reuses_in_a_row_keep_their_frequencies() {
-        // Events of probability 0.9 spend 0.15 or 3.3 bits each: 60 of them share one or two coordinates. The last and
-        // the one before it are as likely as the first, and independent of each other.
+        // Events of probability 0.9 spend 0.15 or 3.3 bits each: 60 of them share one or two coordinates. The
+        // last and the one before it are as likely as the first, and independent of each other.
         let points = IndependentPoints::new(5, 0);
         let n = 100_000;
         let (mut first, mut last, mut both, mut most) = (0.0, 0.0, 0.0, 0);

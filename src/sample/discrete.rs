@@ -1,7 +1,7 @@
 //! A table of discrete events with a guide: choice by one look-up and a short walk, monotone in u.
 //!
-//! Guide tables (Chen and Asau 1974) keep u monotone, so a net stays a net in the chosen event; an alias table would
-//! not. Division by an event's width is a multiplication by its stored reciprocal.
+//! Guide tables (Chen and Asau 1974) keep u monotone, so a net stays a net in the chosen event; an alias
+//! table would not. Division by an event's width is a multiplication by its stored reciprocal.
 
 use super::choose::{Reusable, TWO_TO_64, integer_widths};
 
@@ -28,7 +28,8 @@ pub struct Discrete {
 }
 
 impl Discrete {
-    /// Events in proportion to these weights (non-negative, finite, fewer than 2^32); `None` where none is positive.
+    /// Events in proportion to these weights (non-negative, finite, fewer than 2^32); `None` where none is
+    /// positive.
     pub fn new(weights: &[f64]) -> Option<Self> {
         let positive = |k: &usize| weights[*k] > 0.0;
         let mut entries = Vec::with_capacity(weights.len());
@@ -59,8 +60,8 @@ impl Discrete {
         Some(Self { entries, guide, shift })
     }
 
-    /// Chooses an event with what is left of `u`, and renormalises it: (index of the event, its probability). A table
-    /// of one event leaves u as it is.
+    /// Chooses an event with what is left of `u`, and renormalises it: (index of the event, its probability).
+    /// A table of one event leaves u as it is.
     #[inline]
     pub fn choose(&self, u: &mut Reusable) -> (usize, f64) {
         let bits = u.bits();

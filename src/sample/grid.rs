@@ -1,8 +1,9 @@
-//! The table of a luminaire on the sphere: a density, bilinear on a grid of polar angle and azimuth, and its sampler.
+//! The table of a luminaire on the sphere: a density, bilinear on a grid of polar angle and azimuth, and its
+//! sampler.
 //!
-//! Photometry of type C is such a grid as it stands; types A and B are after a relabelling of axes ([`crate::photometry`],
-//! `full_grid`). Coordinate 1 chooses the cell by its flux (row by row) and, renormalised, theta by the cell's marginal;
-//! coordinate 2 gives phi by the conditional (METHOD 3).
+//! Photometry of type C is such a grid as it stands; types A and B are after a relabelling of axes
+//! ([`crate::photometry`], `full_grid`). Coordinate 1 chooses the cell by its flux (row by row) and,
+//! renormalised, theta by the cell's marginal; coordinate 2 gives phi by the conditional (METHOD 3).
 
 use super::angles::{Angles, Column, Row};
 use super::cell::{Cell, GridPoint};
@@ -41,12 +42,12 @@ struct GridCell {
 }
 
 impl Grid {
-    /// A grid of values (any unit) at `polar` x `azimuth` (radians, rising; polar within [0, pi], azimuth spanning at
-    /// most a full turn), `values[i * azimuth.len() + j]`.
+    /// A grid of values (any unit) at `polar` x `azimuth` (radians, rising; polar within [0, pi], azimuth
+    /// spanning at most a full turn), `values[i * azimuth.len() + j]`.
     ///
     /// # Errors
-    /// Fewer than two angles of either kind, angles that do not rise or leave their range, values that are negative
-    /// or not finite, more than [`MAX_NODES`], and tables whose integral is zero or not finite.
+    /// Fewer than two angles of either kind, angles that do not rise or leave their range, values that are
+    /// negative or not finite, more than [`MAX_NODES`], and tables whose integral is zero or not finite.
     pub fn new(polar: &[f64], azimuth: &[f64], values: &[f64]) -> Result<Self> {
         let angles = Angles::new(polar, azimuth)?;
         let largest = angles.largest(values)?;
@@ -84,8 +85,8 @@ impl Grid {
         &self.choice
     }
 
-    /// A direction by inverse functions or by rejection, or `None` where this point of the sequence gives none
-    /// ([`Rejection::NextPoint`]).
+    /// A direction by inverse functions or by rejection, or `None` where this point of the sequence gives
+    /// none ([`Rejection::NextPoint`]).
     ///
     /// `u` is what is left of the coordinate that chose the emitter.
     #[inline]
@@ -142,8 +143,8 @@ impl Grid {
         self.angles.locate(theta, phi).map_or(0.0, |at| self.largest * self.angles.value(&self.nodes, &at))
     }
 
-    /// Proposals per accepted direction of [`Rejection::Cell`]: the mean over cells, by flux, of largest corner x solid
-    /// angle / flux.
+    /// Proposals per accepted direction of [`Rejection::Cell`]: the mean over cells, by flux, of largest
+    /// corner x solid angle / flux.
     pub fn proposals_of_cells(&self) -> f64 {
         let (mut sum, mut flux) = (0.0, 0.0);
         for (cell, row, column) in self.cells() {
@@ -186,7 +187,8 @@ mod tests {
 
     #[test]
     fn proposals_follow_the_acceptance() {
-        // Values 1 at the poles' far ends and 3 between: proposals per direction are solid angle x largest / integral.
+        // Values 1 at the poles' far ends and 3 between: proposals per direction are solid angle x largest /
+        // integral.
         let polar = [0.0, 1.0, 2.0, PI];
         let azimuth = [0.0, 2.0, 2.0 * PI];
         let values = [1.0, 1.0, 1.0, 3.0, 2.0, 3.0, 3.0, 0.5, 3.0, 1.0, 1.0, 1.0];

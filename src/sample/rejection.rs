@@ -1,9 +1,9 @@
-//! Sampling a table by rejection: the baseline of inverse functions, with the same density and an unbounded number of
-//! coordinates (METHOD 3, 8).
+//! Sampling a table by rejection: the baseline of inverse functions, with the same density and an unbounded
+//! number of coordinates (METHOD 3, 8).
 //!
-//! Proposals are uniform in solid angle. Between theta1 and theta2 that is a uniform h = cos(theta1) - cos(theta); then
-//! sin^2(theta) = sin^2(theta1) + h (2 cos(theta1) - h) and tan((theta - theta1) / 2) = h / (sin(theta1) + sin(theta)),
-//! in which nothing cancels however narrow the cell is.
+//! Proposals are uniform in solid angle. Between theta1 and theta2 that is a uniform h = cos(theta1) -
+//! cos(theta); then sin^2(theta) = sin^2(theta1) + h (2 cos(theta1) - h) and tan((theta - theta1) / 2) = h /
+//! (sin(theta1) + sin(theta)), in which nothing cancels however narrow the cell is.
 
 use std::f64::consts::PI;
 
@@ -18,8 +18,8 @@ use crate::math::trig::sin_cos;
 /// Purposes of the coordinates of theta and phi.
 pub(super) type Purposes = [Purpose; 2];
 
-/// Proposals until one is accepted. `propose` makes a point of two coordinates and tells its value, at most 1, which is the
-/// chance of acceptance. `u` serves as the first coordinate unless it is spent.
+/// Proposals until one is accepted. `propose` makes a point of two coordinates and tells its value, at most
+/// 1, which is the chance of acceptance. `u` serves as the first coordinate unless it is spent.
 #[inline]
 pub(super) fn reject<C: Chooser>(
     u: Reusable,

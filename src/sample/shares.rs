@@ -1,8 +1,9 @@
 //! Which cell of a table a coordinate chooses, for many tables over the same angles.
 //!
-//! A cell owns 64-bit fractions in proportion to its flux, row by row. Kept is the first of them only, 8 bytes a cell, and a
-//! guide: for the leading bits of a fraction, the cell that owns the first fraction with those bits. A cell of zero flux owns
-//! nothing and has the first fraction of the next one, so of equal first fractions the last is the owner's.
+//! A cell owns 64-bit fractions in proportion to its flux, row by row. Kept is the first of them only, 8
+//! bytes a cell, and a guide: for the leading bits of a fraction, the cell that owns the first fraction with
+//! those bits. A cell of zero flux owns nothing and has the first fraction of the next one, so of equal first
+//! fractions the last is the owner's.
 
 use super::angles::Angles;
 use super::choose::{Reusable, Share, integer_widths};
@@ -85,8 +86,8 @@ impl Shares {
         !self.lasts[slice].is_choice
     }
 
-    /// Chooses a cell of a slice by its flux with what is left of `u`, and renormalises it: (row, column). The only cell leaves
-    /// `u` as it is.
+    /// Chooses a cell of a slice by its flux with what is left of `u`, and renormalises it: (row, column).
+    /// The only cell leaves `u` as it is.
     #[inline]
     pub fn choose(&self, slice: usize, u: &mut Reusable) -> [usize; 2] {
         let last = self.lasts[slice];
@@ -126,8 +127,8 @@ impl Shares {
         (row, Share { low: low[row], width: end.unwrap_or(0).wrapping_sub(low[row]) })
     }
 
-    /// A column of a row by the flux of its cells on a second coordinate: (column, its probability in the row, what is left of
-    /// the coordinate for the azimuth).
+    /// A column of a row by the flux of its cells on a second coordinate: (column, its probability in the
+    /// row, what is left of the coordinate for the azimuth).
     #[inline]
     pub fn column_of(&self, slice: usize, row: usize, share: Share, bits: u64) -> (usize, f64, f64) {
         let last = self.lasts[slice];
@@ -166,7 +167,8 @@ impl Shares {
     }
 }
 
-/// Adds to a guide: for each value of the leading bits, which of `low` is the last that is not above the first such fraction.
+/// Adds to a guide: for each value of the leading bits, which of `low` is the last that is not above the
+/// first such fraction.
 fn guide(guide: &mut Vec<u32>, low: &[u64], bits: u32) {
     guide.extend((0..1u64 << bits).map(|slot| {
         let first = if bits == 0 { 0 } else { slot << (64 - bits) };
@@ -187,7 +189,8 @@ mod tests {
         shares
     }
 
-    /// Tables with rows and cells of zero flux in all places, rare cells, and as few rows or columns as there can be.
+    /// Tables with rows and cells of zero flux in all places, rare cells, and as few rows or columns as there
+    /// can be.
     fn tables() -> Vec<(usize, usize, Vec<f64>)> {
         let of = |rows: usize, columns: usize, f: fn(usize, usize) -> f64| {
             (rows, columns, (0..rows * columns).map(|k| f(k / columns, k % columns)).collect())
@@ -251,7 +254,8 @@ mod tests {
                 assert_eq!(Some(row), expected, "{rows} x {columns}: {bits}");
                 let (low, width) = by_row[row];
                 assert_eq!((u128::from(share.low), u128::from(share.width)), (low, width % (1 << 64)));
-                // Columns: at the fractions of the second coordinate at which a cell of the row begins, and just before.
+                // Columns: at the fractions of the second coordinate at which a cell of the row begins, and
+                // just before.
                 for (column, (begin, part)) in cells[row * columns..][..columns].iter().enumerate() {
                     let first = (((begin - low) << 64).div_ceil(width)) as u64;
                     for second in [first.wrapping_sub(1), first] {

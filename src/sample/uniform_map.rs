@@ -8,8 +8,9 @@ use super::grid::Grid;
 use super::rejection::uniform_in_cell;
 use crate::error::{Diagnostic, Kind, Result};
 
-/// Directions uniform in solid angle over the cells of a grid that have a positive value somewhere: an emission map that
-/// shares neither the cells' flux nor the cell equation with the sampler. A direction's weight makes it the table's.
+/// Directions uniform in solid angle over the cells of a grid that have a positive value somewhere: an
+/// emission map that shares neither the cells' flux nor the cell equation with the sampler. A direction's
+/// weight makes it the table's.
 #[derive(Debug, Clone)]
 pub struct UniformMap {
     choice: Discrete,
@@ -29,7 +30,8 @@ impl UniformMap {
         Ok(Self { choice, solid_angle: solid_angles.iter().sum() })
     }
 
-    /// A direction and its weight, 1 on average; `u` is what is left of the coordinate that chose the emitter.
+    /// A direction and its weight, 1 on average; `u` is what is left of the coordinate that chose the
+    /// emitter.
     pub fn sample<C: Chooser>(&self, grid: &Grid, mut u: Reusable, chooser: &mut C) -> (GridPoint, f64) {
         let (_, row, column) = grid.cell(chooser.choose(&self.choice, &mut u, Purpose::Emission));
         let u_theta = chooser.rest(u, Purpose::EmissionTheta);
@@ -48,7 +50,8 @@ mod tests {
 
     #[test]
     fn weights_of_the_uniform_map_average_to_one_and_to_the_table() {
-        // A cell of zeros, one bright corner: mean weight 1, and the weighted share of a cell is its share of the flux.
+        // A cell of zeros, one bright corner: mean weight 1, and the weighted share of a cell is its share of
+        // the flux.
         let polar = [0.0, 0.7, 1.5, PI];
         let azimuth = [0.0, 2.0, 2.0 * PI];
         let values = [0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 9.0, 1.0, 1.0, 1.0];

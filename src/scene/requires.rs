@@ -1,8 +1,8 @@
 //! What a scene requires: only that machinery runs (ARCHITECTURE, Numbers: "only what a scene requires").
 //!
-//! What is not in the list costs nothing: no storage and no branch in the inner loop. Only a scene of materials in colour
-//! has photons with weights; only one with a camera keeps photons, and only where the camera makes a map of them. Nothing that a
-//! scene can name needs wavelengths, so there are none.
+//! What is not in the list costs nothing: no storage and no branch in the inner loop. Only a scene of
+//! materials in colour has photons with weights; only one with a camera keeps photons, and only where the
+//! camera makes a map of them. Nothing that a scene can name needs wavelengths, so there are none.
 
 use crate::emitter::Emits;
 use crate::geometry::Shape;

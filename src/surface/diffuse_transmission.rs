@@ -1,25 +1,28 @@
-//! A thin diffuse sheet (paper, opal glass, a lampshade): light leaves with the cosine law on the side of arrival and on the
-//! other one. The medium is the same on both sides.
+//! A thin diffuse sheet (paper, opal glass, a lampshade): light leaves with the cosine law on the side of
+//! arrival and on the other one. The medium is the same on both sides.
 //!
-//! Scene text: `type = "lambertian"`, `reflectance` and `transmittance`, each 0 to 1 or `[r, g, b]`, at most 1 together.
+//! Scene text: `type = "lambertian"`, `reflectance` and `transmittance`, each 0 to 1 or `[r, g, b]`, at most
+//! 1 together.
 
 use glam::DVec3;
 
 use crate::error::Invalid;
+use crate::error::invalid::Interval;
 use crate::sample::coordinates::Chooser;
 use crate::surface::lambertian::{sample_cosine, value};
 use crate::surface::throughput::Fate;
 use crate::surface::{Event, Incidence, Kind, Leg, Model, Reflectance, Throughput, luminance};
 
-/// A thin sheet: f = reflectance / pi between directions of one side, transmittance / pi between those of different sides.
+/// A thin sheet: f = reflectance / pi between directions of one side, transmittance / pi between those of
+/// different sides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiffuseTransmission {
     reflected: Reflectance,
     transmitted: Reflectance,
 }
 
-/// What a transmittance must be, in words.
-pub const REQUIRED: &str = "a transmittance from 0 to 1";
+/// Transmitted parts.
+pub const TRANSMITTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a transmittance from 0 to 1" };
 
 impl DiffuseTransmission {
     /// A sheet that reflects and transmits these parts of red, green and blue, on either side.
@@ -28,7 +31,7 @@ impl DiffuseTransmission {
     /// Parts that are not from 0 to 1, or more than 1 together.
     pub fn new(reflectance: [f64; 3], transmittance: [f64; 3]) -> Result<Self, Invalid> {
         let reflected = Reflectance::rgb(reflectance)?;
-        let transmitted = Reflectance::named("transmittance", transmittance, REQUIRED)?;
+        let transmitted = Reflectance::named("transmittance", transmittance, &TRANSMITTANCE)?;
         let this = Self { reflected, transmitted };
         if this.scattered().iter().all(|part| *part <= 1.0) {
             return Ok(this);
@@ -49,21 +52,19 @@ impl DiffuseTransmission {
 }
 
 impl Model for DiffuseTransmission {
+    const REQUIRES: &[&str] = &["diffuse scattering", "diffuse transmission"];
+
     #[inline]
     fn kind(&self) -> Kind {
         if luminance(self.scattered()) > 0.0 { Kind::Scattering } else { Kind::Absorbing }
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &["diffuse scattering", "diffuse transmission"]
     }
 
     fn is_coloured(&self) -> bool {
         self.reflected.is_coloured() || self.transmitted.is_coloured()
     }
 
-    /// Scatters what the throughput lets go on; into which side is an event of its own. (Kept out of the walk, whose other
-    /// surfaces need few registers.)
+    /// Scatters what the throughput lets go on; into which side is an event of its own. (Kept out of the
+    /// walk, whose other surfaces need few registers.)
     #[inline(never)]
     fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, carried: &mut T) -> Event {
         let scattered = self.scattered();

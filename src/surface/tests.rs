@@ -8,8 +8,8 @@ use super::*;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sequence::owen::OwenPoints;
 
-/// A chooser that follows a script: events and uniforms in order. It panics when it runs out, so a test also counts what
-/// is asked for.
+/// A chooser that follows a script: events and uniforms in order. It panics when it runs out, so a test also
+/// counts what is asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Script {
     pub events: Vec<bool>,
@@ -116,7 +116,8 @@ fn assert_density(material: &Material, events: &[bool]) {
     }
 }
 
-/// Integral of `pdf` over the directions of each side (that of arrival first), by the midpoint rule; relative error below 1e-6.
+/// Integral of `pdf` over the directions of each side (that of arrival first), by the midpoint rule; relative
+/// error below 1e-6.
 fn albedo(material: &Material, at: &Incidence) -> [f64; 2] {
     let (rows, columns) = (1000, 8);
     let wi = Leg { direction: -at.direction, front: at.front };

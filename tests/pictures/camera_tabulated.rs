@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use caustix::geometry::{Rectangle, Shape, Surface};
+use caustix::geometry::Rectangle;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{Frame, Quantity, ScatterTable};
 use caustix::scene::camera::CameraSpec;

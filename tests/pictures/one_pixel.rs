@@ -21,7 +21,7 @@ use crate::photons::{choice, density_of};
 pub use crate::support::pictures::camera;
 
 /// The photons of some replicates of 2^m photons each, as a run keeps them: (caustic, diffuse).
-pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
+pub fn photons(scene: &Scene, replicates: Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
     let mut store = PhotonStore::<1>::new(scene);
     let nobody = Receivers::new(&scene.geometry, &[]);
     let interrupt = AtomicBool::new(false);

@@ -1,5 +1,5 @@
-//! Every solver of the cell equation over every family of METHOD 3 and 8, the residual by quadrature; and tables at their
-//! extremes, sampled and inverted.
+//! Every solver of the cell equation over every family of METHOD 3 and 8, the residual by quadrature; and
+//! tables at their extremes, sampled and inverted.
 
 use std::f64::consts::PI;
 
@@ -34,7 +34,8 @@ fn no_solver_fails_in_any_family() {
             all.most_evaluations
         );
         assert!(all.worst <= SOLVED);
-        // Twelve steps of the method and a bisection of 53 bits; Ridder's method halves with every second evaluation.
+        // Twelve steps of the method and a bisection of 53 bits; Ridder's method halves with every second
+        // evaluation.
         assert!(all.most_evaluations <= 12 + 53, "{} used {}", solver.name(), all.most_evaluations);
     }
 }
@@ -100,8 +101,9 @@ fn grid(table: &SphereTable) -> Grid {
     Grid::new(&table.polar, &table.azimuth, &table.values).unwrap()
 }
 
-/// Samples every solver at spread and at extreme coordinates and inverts by quadrature: u1 comes back to a part of 1e-9 of
-/// itself, allowing for what the solver's tolerance and the rounding of an angle are worth in u1.
+/// Samples every solver at spread and at extreme coordinates and inverts by quadrature: u1 comes back to a
+/// part of 1e-9 of itself, allowing for what the solver's tolerance and the rounding of an angle are worth in
+/// u1.
 fn check(name: &str, table: &SphereTable) {
     let grid = grid(table);
     assert!((grid.integral() / table.total() - 1.0).abs() < 1e-12, "{name}");
@@ -117,7 +119,8 @@ fn check(name: &str, table: &SphereTable) {
             assert!(
                 (grid.value(point.theta, point.phi) / grid.integral() - density).abs() <= 1e-11 * density
             );
-            // One unit of theta (2^-51) and of phi (2^-50) moves u1 by the density times the width of the turn.
+            // One unit of theta (2^-51) and of phi (2^-50) moves u1 by the density times the width of the
+            // turn.
             let rounding = 2f64.powi(-51) * density * point.theta.sin() * 2.0 * PI + 2f64.powi(-45);
             let off = (v1 - u1 as f64 / TWO_TO_64).abs();
             assert!(off <= 1e-9 * (u1 as f64 / TWO_TO_64) + rounding, "{}: {off:e} {rounding:e}", context());
@@ -137,8 +140,8 @@ fn tables_at_their_extremes_invert_for_every_solver() {
     check("twelve decades", &whole(36, 24, |i, j| 10f64.powi(((i * 5 + (j % 24) * 7) % 13) as i32 - 12)));
 }
 
-/// All but one cell zero: the four cells around one node are as few as a bilinear table over the sphere can have, and a
-/// corner of the table belongs to a single one.
+/// All but one cell zero: the four cells around one node are as few as a bilinear table over the sphere can
+/// have, and a corner of the table belongs to a single one.
 #[test]
 fn one_cell_among_zeros_is_found_by_every_solver() {
     let lit = |at: (usize, usize)| {

@@ -1,7 +1,9 @@
-//! What must hold of every tabulated surface: value, albedo, density and what `scatter` does to photons, against each other
-//! and against quadrature. The same checks for tables from formulas, the project's own and real files.
+//! What must hold of every tabulated surface: value, albedo, density and what `scatter` does to photons,
+//! against each other and against quadrature. The same checks for tables from formulas, the project's own and
+//! real files.
 //!
-//! `scatter` takes three coordinates here: one decides whether the photon is scattered and by which slice, two place it.
+//! `scatter` takes three coordinates here: one decides whether the photon is scattered and by which slice,
+//! two place it.
 
 use caustix::sample::coordinates::{Chooser, Coordinates};
 use caustix::sample::method::Sampling;
@@ -69,8 +71,8 @@ pub fn sides(name: &str, table: &ScatterTable) -> Vec<Surface> {
     wanted.into_iter().filter(|(_, lobes, _)| !lobes.is_empty()).map(side).collect()
 }
 
-/// Twelve incident directions on and off the angles of a surface's first lobe: normal and grazing, at its first and last
-/// angles and others between, halfway and elsewhere between two, beyond the last.
+/// Twelve incident directions on and off the angles of a surface's first lobe: normal and grazing, at its
+/// first and last angles and others between, halfway and elsewhere between two, beyond the last.
 pub fn incidences_of(surface: &Surface) -> Vec<DVec3> {
     let lobe = &surface.lobes[0];
     let (thetas, phis) = (&lobe.theta_i_deg, &lobe.phi_i_deg);
@@ -144,7 +146,8 @@ pub fn cell(surface: &Surface, lobe: usize, wi: DVec3, wo: DVec3) -> usize {
     at(&data.polar_deg, theta) * (data.azimuth_deg.len() - 1) + at(&data.azimuth_deg, phi)
 }
 
-/// Albedo of every channel is the integral of g over all lobes, to 1e-6. Returns the worst relative difference.
+/// Albedo of every channel is the integral of g over all lobes, to 1e-6. Returns the worst relative
+/// difference.
 pub fn integrals_agree(surface: &Surface, wi: DVec3) -> f64 {
     let lobes = (0..surface.lobes.len()).map(|lobe| integrals(surface, lobe, wi));
     let cells: Vec<[f64; 3]> = lobes.flatten().collect();
@@ -162,8 +165,8 @@ pub fn integrals_agree(surface: &Surface, wi: DVec3) -> f64 {
 /// How photons get their coordinates: with renormalisation or without, and how tables are sampled.
 pub type Way = (bool, Sampling);
 
-/// Chi-square of so many photons from wi: those absorbed, those that leave by the cell of their lobe. Of light below the horizon
-/// no direction is told, so the cells that may reach there are one.
+/// Chi-square of so many photons from wi: those absorbed, those that leave by the cell of their lobe. Of
+/// light below the horizon no direction is told, so the cells that may reach there are one.
 pub fn photons_against_quadrature(
     surface: &Surface,
     wi: DVec3,
@@ -223,7 +226,8 @@ impl Branch<'_> {
     }
 }
 
-/// Incidences of a lobe about an angle: (index, weight), by the words of the contract: linear between angles, the end ones hold.
+/// Incidences of a lobe about an angle: (index, weight), by the words of the contract: linear between angles,
+/// the end ones hold.
 fn about(angles: &[f64], x: f64) -> Vec<(usize, f64)> {
     let last = angles.len() - 1;
     match angles.iter().position(|a| *a > x) {
@@ -299,8 +303,9 @@ fn coordinates(i: u64, albedo: f64) -> [u64; 3] {
     [if i % 8 == 0 { event } else { fraction(albedo.min(1.0) * to_unit_f64(event)) }, u1, u2]
 }
 
-/// The coordinates of a photon follow from where it went: whether it was scattered and by which slice from the event, two more by
-/// quadrature of that slice; and they send it there again. Returns how many photons left.
+/// The coordinates of a photon follow from where it went: whether it was scattered and by which slice from
+/// the event, two more by quadrature of that slice; and they send it there again. Returns how many photons
+/// left.
 pub fn coordinates_come_back(surface: &Surface, wi: DVec3, n: u64) -> usize {
     let name = &surface.name;
     let (branches, albedo) = (branches(surface, wi), luminance(surface.albedo(wi)));
@@ -338,8 +343,8 @@ pub fn coordinates_come_back(surface: &Surface, wi: DVec3, n: u64) -> usize {
     checked
 }
 
-/// 1 / |d wo / d(u1, u2)| of a branch by central differences of two widths; `None` where they disagree (an edge of a cell) or
-/// light ends below the horizon.
+/// 1 / |d wo / d(u1, u2)| of a branch by central differences of two widths; `None` where they disagree (an
+/// edge of a cell) or light ends below the horizon.
 fn inverse_jacobian(surface: &Surface, wi: DVec3, branch: &Branch<'_>, [v1, v2]: [f64; 2]) -> Option<f64> {
     let event = fraction(0.5 * (branch.events[0] + branch.events[1]));
     let (u1, u2) = (fraction(v1), fraction(v2));
@@ -357,8 +362,8 @@ fn inverse_jacobian(surface: &Surface, wi: DVec3, branch: &Branch<'_>, [v1, v2]:
     ((wide / narrow - 1.0).abs() < 1e-4).then_some(narrow)
 }
 
-/// The inverse Jacobians of all branches at a direction, each by its part of the events, add up to g there. Returns how many
-/// points were checked, and how many of them several branches reach.
+/// The inverse Jacobians of all branches at a direction, each by its part of the events, add up to g there.
+/// Returns how many points were checked, and how many of them several branches reach.
 pub fn jacobians_add_up(surface: &Surface, wi: DVec3, n: u64) -> (usize, usize) {
     let (branches, albedo) = (branches(surface, wi), luminance(surface.albedo(wi)));
     let (mut checked, mut several) = (0, 0);
@@ -394,7 +399,8 @@ pub fn below_horizon(surface: &Surface, wi: DVec3, n: u64) -> f64 {
     if all > 0.0 { lost / all } else { 0.0 }
 }
 
-/// Whether a lobe's cells are above the horizon, by their corners; the great circle bends less than 0.02 between them.
+/// Whether a lobe's cells are above the horizon, by their corners; the great circle bends less than 0.02
+/// between them.
 pub fn above(surface: &Surface, lobe: usize, wi: DVec3) -> Vec<bool> {
     let data = &surface.lobes[lobe];
     let mut all = Vec::new();

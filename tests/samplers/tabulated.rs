@@ -1,5 +1,5 @@
-//! Scattering tables made from formulas: value, albedo, density, sample and its inverse against each other and against
-//! quadrature, for incident directions on and off the table's angles.
+//! Scattering tables made from formulas: value, albedo, density, sample and its inverse against each other
+//! and against quadrature, for incident directions on and off the table's angles.
 //!
 //! The frames are written down here once more, from the words of the table's documentation.
 
@@ -87,8 +87,8 @@ fn values_at_the_nodes_are_those_of_the_table() {
     }
 }
 
-/// Between the table's angles g is the linear mixture of its slices at the same angles of the lobe's own frame; before the first
-/// and beyond the last theta_i it is that slice.
+/// Between the table's angles g is the linear mixture of its slices at the same angles of the lobe's own
+/// frame; before the first and beyond the last theta_i it is that slice.
 #[test]
 fn incident_angles_mix_linearly_where_the_lobe_stands_still() {
     // At normal incidence itself the plane of incidence is another one: this many degrees stand for none.
@@ -257,7 +257,8 @@ fn extremes_are_what_they_are_called() {
     assert!((0..n).all(|k| cells.contains(&k)) && cells.iter().any(|k| k / n == rows - 1), "{cells:?}");
 }
 
-/// In the cells about a pole the azimuth of samples follows the conditional of a flat ring: even, at any size of theta.
+/// In the cells about a pole the azimuth of samples follows the conditional of a flat ring: even, at any size
+/// of theta.
 #[test]
 fn azimuths_are_even_about_the_pole() {
     let all = surfaces();
@@ -279,8 +280,8 @@ fn azimuths_are_even_about_the_pole() {
         let test = chi_square(ring, &[1.0; 24]);
         assert!(test.p_value > level && test.degrees == 23, "{test:?}");
     }
-    // g falls linearly from the pole to the first node: P(theta < t) = (x^2 - 2 x^3 / 3) / (1/3) for x = t / step, but for the
-    // sine's curvature, 1e-3 of it.
+    // g falls linearly from the pole to the first node: P(theta < t) = (x^2 - 2 x^3 / 3) / (1/3) for x = t /
+    // step, but for the sine's curvature, 1e-3 of it.
     let inner = rings[0].iter().sum::<u64>() as f64 / 200_000.0;
     let expected = 3.0 * (1.0 / 9.0 - 2.0 / 81.0);
     assert!((inner - expected).abs() < 4.5 * (expected * (1.0 - expected) / 2e5).sqrt() + 1e-3, "{inner}");
@@ -307,7 +308,8 @@ fn rejection_follows_the_same_density() {
     }
 }
 
-/// Means over photons of what goes on, by channel, and of that times cos(theta_o): against albedo and quadrature.
+/// Means over photons of what goes on, by channel, and of that times cos(theta_o): against albedo and
+/// quadrature.
 #[test]
 fn colour_is_carried_without_bias_and_luminance_stays_one() {
     let cases = cases();

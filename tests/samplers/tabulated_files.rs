@@ -1,5 +1,6 @@
-//! The checks of a tabulated surface on files: the project's own tables, real ones where they are at hand, a MERL file. Value,
-//! albedo, density, sample and its inverse against each other and against quadrature, at twelve incident directions each.
+//! The checks of a tabulated surface on files: the project's own tables, real ones where they are at hand, a
+//! MERL file. Value, albedo, density, sample and its inverse against each other and against quadrature, at
+//! twelve incident directions each.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +49,8 @@ fn check(surfaces: &[Surface]) {
     }
 }
 
-/// The sides of the tables in a folder and those below it, in the order of their paths; and what is not read, with the reason.
+/// The sides of the tables in a folder and those below it, in the order of their paths; and what is not read,
+/// with the reason.
 fn surfaces_of(folder: &Path, below: &Path) -> (Vec<Surface>, Vec<String>) {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(below).unwrap().map(|e| e.unwrap().path()).collect();
     paths.sort();

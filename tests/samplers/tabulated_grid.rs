@@ -1,5 +1,5 @@
-//! The two tables on the sphere, that of a luminaire and those of a scattering table: each other's samples, the coordinates of a
-//! sample by quadrature, and their extremes.
+//! The two tables on the sphere, that of a luminaire and those of a scattering table: each other's samples,
+//! the coordinates of a sample by quadrature, and their extremes.
 
 use std::f64::consts::PI;
 
@@ -75,8 +75,8 @@ fn sample_then_invert_returns_the_coordinates() {
         let (u1, u2) = (mix64(2 * i), mix64(2 * i + 1));
         let point = of_grid(&grid, u1, u2, Solver::DEFAULT);
         let [v1, v2] = table.by_cell(point.theta, point.phi);
-        // The remainder resolves theta to 2^-46 of the cell; angles are rounded to 2^-52 of a turn against cells
-        // of a tenth, and u inside a cell is worth its probability.
+        // The remainder resolves theta to 2^-46 of the cell; angles are rounded to 2^-52 of a turn against
+        // cells of a tenth, and u inside a cell is worth its probability.
         assert!((v1 - to_unit_f64(u1)).abs() < 1e-13, "{i}: {v1} {u1}");
         let flat = table.density(point.theta, point.phi) < 1e-6;
         assert!((v2 - to_unit_f64(u2)).abs() < 2e-13 || flat, "{i}: {v2} {u2}");
@@ -92,7 +92,8 @@ fn jacobian_is_the_inverse_density_pointwise() {
     for i in 0..3000u64 {
         let (u1, u2) = (mix64(i) | 1 << 40, mix64(!i));
         let (h1, h2) = (1u64 << 38, 1u64 << 44);
-        // Away from the edges of the cell's share of u1 and of u2: where a corner is zero the map has a square root there.
+        // Away from the edges of the cell's share of u1 and of u2: where a corner is zero the map has a
+        // square root there.
         let mut rest = Reusable::fresh(u1);
         grid.choice().choose(&mut rest);
         if [rest.bits(), u2].into_iter().any(|u| !(0.01..0.99).contains(&to_unit_f64(u))) {
@@ -114,7 +115,8 @@ fn jacobian_is_the_inverse_density_pointwise() {
     assert!(checked > 2500, "{checked}");
 }
 
-/// The first and the last fraction of every cell, and what lies beside them: the right cell, by its row and its column.
+/// The first and the last fraction of every cell, and what lies beside them: the right cell, by its row and
+/// its column.
 #[test]
 fn cells_begin_and_end_where_their_shares_do() {
     let table = SphereTable::over_the_sphere([6, 8], 0.0, |i, j| match (i, j % 8) {

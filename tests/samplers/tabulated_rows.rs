@@ -1,4 +1,5 @@
-//! Rows and columns of a table on coordinates of their own: the same density as by cells, steady in both coordinates.
+//! Rows and columns of a table on coordinates of their own: the same density as by cells, steady in both
+//! coordinates.
 
 use caustix::sample::compact::CompactGrids;
 use caustix::sequence::Points;
@@ -20,8 +21,8 @@ fn grid(f: impl Fn(usize, usize) -> f64) -> (CompactGrids, SphereTable) {
     (grids, table)
 }
 
-/// Rows and cells of zeros, also first and last ones; values fifteen decades apart, which f32 holds exactly in units of the
-/// largest.
+/// Rows and cells of zeros, also first and last ones; values fifteen decades apart, which f32 holds exactly
+/// in units of the largest.
 fn lumpy(i: usize, j: usize) -> f64 {
     match (i, (i * 31 + j % COLUMNS * 17) % 23) {
         (0 | 1 | 8 | 9 | 17 | 18, _) | (_, 0..8) => 0.0,
@@ -38,7 +39,8 @@ fn the_coordinates_of_a_sample_come_back() {
         let (u1, u2) = (mix64(2 * i), mix64(2 * i + 1));
         let q = of_slice(&grids, 0, u1, u2);
         let [v1, v2] = table.by_row(q.theta, q.phi);
-        // Angles are rounded to 2^-52 of a turn; where the density vanishes they tell less of the coordinates.
+        // Angles are rounded to 2^-52 of a turn; where the density vanishes they tell less of the
+        // coordinates.
         let faint = table.density(q.theta, q.phi) < 1e-6;
         assert!(faint || (v1 - to_unit_f64(u1)).abs() < 1e-12, "{i}: {v1} {u1}");
         assert!(faint || (v2 - to_unit_f64(u2)).abs() < 1e-10, "{i}: {v2} {u2}");
@@ -47,8 +49,9 @@ fn the_coordinates_of_a_sample_come_back() {
 
 #[test]
 fn every_cell_has_its_share_of_the_unit_square() {
-    // Of a net of 2^20 points a box of the square, which is what a cell has, holds its area to within the elementary intervals
-    // its borders cut, some tens. By chance alone the counts, up to 20 000, would be off by their roots, and chi2 some 250.
+    // Of a net of 2^20 points a box of the square, which is what a cell has, holds its area to within the
+    // elementary intervals its borders cut, some tens. By chance alone the counts, up to 20 000, would be off
+    // by their roots, and chi2 some 250.
     let (grids, table) = grid(lumpy);
     let points = OwenPoints::new(7, 0);
     let n = 1u64 << 20;

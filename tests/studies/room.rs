@@ -9,7 +9,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use caustix::files::scene_toml::read;
 use caustix::geometry::Shape;
-use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure};
+use caustix::lab::room::measure::measure;
+use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task};
 use caustix::report::room as report;
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;

@@ -8,8 +8,8 @@ use caustix::sample::coordinates::{Chooser, Purpose};
 use caustix::sample::grid::Grid;
 use caustix::sample::method::Sampling;
 
-/// A chooser with one coordinate for all events and others in order. It has no more than is given, so a test also counts what is
-/// drawn; and however little is left of a coordinate, it serves.
+/// A chooser with one coordinate for all events and others in order. It has no more than is given, so a test
+/// also counts what is drawn; and however little is left of a coordinate, it serves.
 #[derive(Debug, Clone)]
 pub struct Script {
     event: Reusable,
@@ -68,7 +68,8 @@ pub fn of_grid(grid: &Grid, u1: u64, u2: u64, solver: Solver) -> GridPoint {
     grid.draw(Sampling::Inverse(solver), Reusable::fresh(u1), &mut Script::new(0, &[u2])).unwrap()
 }
 
-/// The direction of a slice for two coordinates, of which the first chooses the row too, the second the column.
+/// The direction of a slice for two coordinates, of which the first chooses the row too, the second the
+/// column.
 pub fn of_slice(grids: &CompactGrids, slice: usize, u1: u64, u2: u64) -> GridPoint {
     grids.draw(slice, &mut Script::new(0, &[u1, u2])).0
 }

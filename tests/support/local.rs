@@ -1,4 +1,5 @@
-//! Tabulated surfaces in a local frame: z the normal on the side that light comes from, x the reference direction.
+//! Tabulated surfaces in a local frame: z the normal on the side that light comes from, x the reference
+//! direction.
 
 use caustix::scattering::Quantity;
 use caustix::surface::{Incidence, Leg, Model, Tabulated};

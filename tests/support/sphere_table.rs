@@ -1,5 +1,6 @@
-//! A table on the sphere by quadrature: values, masses of cells, and the coordinates that a point comes from. Bilinear between
-//! nodes, under sin(theta) dtheta dphi; no formula of the sampler is used, no antiderivative.
+//! A table on the sphere by quadrature: values, masses of cells, and the coordinates that a point comes from.
+//! Bilinear between nodes, under sin(theta) dtheta dphi; no formula of the sampler is used, no
+//! antiderivative.
 
 use super::quadrature::Gauss;
 
@@ -50,7 +51,8 @@ impl SphereTable {
         self.values[i * self.azimuth.len() + j]
     }
 
-    /// Integrals from the near edge of row i to theta, of sin(theta) times the weight of the near and of the far edge.
+    /// Integrals from the near edge of row i to theta, of sin(theta) times the weight of the near and of the
+    /// far edge.
     fn towards_edges(&self, i: usize, theta: f64) -> [f64; 2] {
         let (from, width) = (self.polar[i], self.polar[i + 1] - self.polar[i]);
         let (s, mut near, mut far) = (theta - from, 0.0, 0.0);
@@ -124,7 +126,8 @@ impl SphereTable {
         [below / self.total() + here * along, across]
     }
 
-    /// The coordinates of a point where the first one chooses the row and theta, the second one the column and phi.
+    /// The coordinates of a point where the first one chooses the row and theta, the second one the column
+    /// and phi.
     pub fn by_row(&self, theta: f64, phi: f64) -> [f64; 2] {
         let (i, j) = self.cell(theta, phi);
         let [along, across] = self.inside_cell(theta, phi);

@@ -15,8 +15,8 @@ use crate::lab::study::cells::areas_m2;
 use crate::scene::Scene;
 use crate::sequence::Sequence;
 
-pub use measure::{Measurement, Task, measure};
-pub use tables::{Deviation, Row, Value};
+pub use measure::{Measurement, Task};
+pub use tables::{Row, Value};
 
 /// The sequences that are compared: the paper's four, and Sobol'.
 pub const SEQUENCES: [Sequence; 5] =

@@ -1,9 +1,10 @@
 //! Which slice of which lobe scatters a photon, and where to.
 //!
-//! With renormalisation the slice is one of the photon's discrete events, on the coordinate that all of these share, and the
-//! direction has two coordinates to itself: one for row and polar angle, one for column and azimuth. So the direction goes
-//! steadily with both and hardly changes with the slice, and points that fill the unit cube evenly fill the lobe evenly, even
-//! where their number allows only a few strata in each of many dimensions (docs/STUDY.md). Without, each choice has its own coordinate.
+//! With renormalisation the slice is one of the photon's discrete events, on the coordinate that all of these
+//! share, and the direction has two coordinates to itself: one for row and polar angle, one for column and
+//! azimuth. So the direction goes steadily with both and hardly changes with the slice, and points that fill
+//! the unit cube evenly fill the lobe evenly, even where their number allows only a few strata in each of
+//! many dimensions (docs/STUDY.md). Without, each choice has its own coordinate.
 
 use glam::{DMat3, DVec3};
 
@@ -159,7 +160,8 @@ impl<'a> Lobes<'a> {
         self.arrival.axes(layer.frame, layer.quantity)
     }
 
-    /// Every branch, the channels in these shares. A grey lobe is the same for all channels: one branch with all shares.
+    /// Every branch, the channels in these shares. A grey lobe is the same for all channels: one branch with
+    /// all shares.
     #[inline(always)]
     fn branches(&self, shares: [f64; 3]) -> Branches<MOST_COLOURED> {
         let mut all = Branches::none();
@@ -175,7 +177,8 @@ impl<'a> Lobes<'a> {
         all
     }
 
-    /// A direction of light that is scattered, with the values of its channels there; `None` where nothing is.
+    /// A direction of light that is scattered, with the values of its channels there; `None` where nothing
+    /// is.
     #[inline(always)]
     pub fn sample<C: Chooser>(&self, shares: [f64; 3], chooser: &mut C) -> Option<Left> {
         let branch = self.branches(shares).decide(chooser)?;
@@ -186,7 +189,8 @@ impl<'a> Lobes<'a> {
         Some(left)
     }
 
-    /// Proposals of white light, times the chance of being scattered: (inside cells, against a slice's largest).
+    /// Proposals of white light, times the chance of being scattered: (inside cells, against a slice's
+    /// largest).
     pub fn proposals(&self, shares: [f64; 3]) -> (f64, f64) {
         let (mut cells, mut table) = (0.0, 0.0);
         for branch in self.branches(shares).as_slice() {
@@ -200,8 +204,8 @@ impl<'a> Lobes<'a> {
     }
 }
 
-/// A direction from a slice, the point of its grid, and where in the grid that lies if that is known. The values are still to be
-/// told.
+/// A direction from a slice, the point of its grid, and where in the grid that lies if that is known. The
+/// values are still to be told.
 #[inline(always)]
 pub(crate) fn leave<C: Chooser>(
     arrival: &Arrival,

@@ -2,18 +2,19 @@
 //!
 //! Scene text: `type = "tabulated"`, `file`, `side`, `rotation_deg`, `energy`, `specular_remainder`.
 //!
-//! **Contract.** Directions wi and wo are unit and point away from the surface; [`crate::scattering::table`] defines the frames
-//! of the table. Light from wi is scattered with the probability [`Tabulated::albedo`], the integral of g = f cos(theta_o), into
-//! wo with the density g / albedo per steradian ([`Tabulated::projected`]). The rest is absorbed or, on demand, mirrored (passes
-//! straight on, where the table transmits).
+//! **Contract.** Directions wi and wo are unit and point away from the surface; [`crate::scattering::table`]
+//! defines the frames of the table. Light from wi is scattered with the probability [`Tabulated::albedo`],
+//! the integral of g = f cos(theta_o), into wo with the density g / albedo per steradian
+//! ([`Tabulated::projected`]). The rest is absorbed or, on demand, mirrored (passes straight on, where the
+//! table transmits).
 //!
-//! **Between angles.** The slices about (theta_i, phi_i) mix linearly in the frame of the actual incidence, in which the lobe
-//! stands still; before the first and beyond the last theta_i that slice holds. Albedo, value, density and sample are those of
-//! the mixture.
+//! **Between angles.** The slices about (theta_i, phi_i) mix linearly in the frame of the actual incidence,
+//! in which the lobe stands still; before the first and beyond the last theta_i that slice holds. Albedo,
+//! value, density and sample are those of the mixture.
 //!
-//! **Horizon.** A cell that crosses the horizon, or a lobe that turned with the incidence, sends light where there is only the
-//! surface: it is absorbed and counted. The density covers that part too, so it integrates to 1 over all wo, not over the
-//! hemisphere; f is 0 there.
+//! **Horizon.** A cell that crosses the horizon, or a lobe that turned with the incidence, sends light where
+//! there is only the surface: it is absorbed and counted. The density covers that part too, so it integrates
+//! to 1 over all wo, not over the hemisphere; f is 0 there.
 //!
 //! **Normals.** The facet's normal is used, as for Lambertian surfaces.
 
@@ -56,7 +57,8 @@ impl Tabulated {
     /// Builds the samplers of a table; the warnings are those of its energy.
     ///
     /// # Errors
-    /// An albedo above 1, unless `energy` allows it; a reference without direction or a rotation that is not finite; a table too large.
+    /// An albedo above 1, unless `energy` allows it; a reference without direction or a rotation that is not
+    /// finite; a table too large.
     pub fn new(table: &ScatterTable, options: &Options) -> Result<(Self, Vec<Diagnostic>)> {
         if !options.rotation_deg.is_finite() {
             let found = format!("rotation_deg {}", options.rotation_deg);

@@ -1,5 +1,5 @@
-//! A table under the contract of all materials: what tells it apart from others, its value between two directions, and what
-//! it leaves of the light beyond.
+//! A table under the contract of all materials: what tells it apart from others, its value between two
+//! directions, and what it leaves of the light beyond.
 
 use std::sync::Arc;
 
@@ -14,13 +14,11 @@ use crate::surface::{Event, Incidence, Kind, Leg, Model, Throughput, Way, Ways};
 use crate::units::LUMINANCE_OF_RGB;
 
 impl Model for Tabulated {
+    const REQUIRES: &[&str] = &["tabulated scattering"];
+
     #[inline]
     fn kind(&self) -> Kind {
         Kind::Scattering
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &["tabulated scattering"]
     }
 
     fn is_coloured(&self) -> bool {
@@ -41,8 +39,8 @@ impl Model for Tabulated {
         self.projected(outward, wi, quantity, wo.direction).map(|g| g / cos_o)
     }
 
-    /// Mirrored from the side of the eye, and straight through from the other; both only where the two sides of a table
-    /// differ.
+    /// Mirrored from the side of the eye, and straight through from the other; both only where the two sides
+    /// of a table differ.
     fn specular(&self, at: &Incidence) -> Ways {
         let outward = at.outward();
         let way = |quantity| {
@@ -81,8 +79,8 @@ impl Model for Tabulated {
 }
 
 impl Tabulated {
-    /// g = f cos(theta_o), 1/sr, by channel: of the lobe that reflects or of the one that transmits, also where it reaches below
-    /// its horizon. Its integral over all wo and both lobes is the albedo.
+    /// g = f cos(theta_o), 1/sr, by channel: of the lobe that reflects or of the one that transmits, also
+    /// where it reaches below its horizon. Its integral over all wo and both lobes is the albedo.
     pub fn projected(&self, outward: DVec3, wi: Leg, quantity: Quantity, wo: DVec3) -> [f64; 3] {
         let (face, arrival) = self.arriving(outward, wi);
         self.lobes(face, &arrival, || self.along(outward)).projected(quantity, wo)

@@ -15,7 +15,8 @@ pub enum Energy {
 /// Which side of the surface a table's lobes are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sides {
-    /// The table's front is the side the outward normal points to. A side for which the table has no lobe absorbs.
+    /// The table's front is the side the outward normal points to. A side for which the table has no lobe
+    /// absorbs.
     Front,
     /// The table's front is the other side.
     Back,
@@ -33,11 +34,11 @@ pub struct Options {
     pub sides: Sides,
     /// The surface's reference direction. Only tables with several phi_i depend on it.
     pub reference: Reference,
-    /// Turn of the table's reference direction against the surface's, counter-clockwise seen from the tip of the outward
-    /// normal.
+    /// Turn of the table's reference direction against the surface's, counter-clockwise seen from the tip of
+    /// the outward normal.
     pub rotation_deg: f64,
-    /// What the table leaves of the light goes on: straight through where the table transmits light of this side, mirrored
-    /// where it only reflects it.
+    /// What the table leaves of the light goes on: straight through where the table transmits light of this
+    /// side, mirrored where it only reflects it.
     pub specular_remainder: bool,
 }
 

@@ -12,7 +12,8 @@ use crate::surface::{Event, Incidence, Reflectance, Throughput};
 use crate::units::LUMINANCE_OF_RGB;
 
 impl Tabulated {
-    /// Scatters what the throughput lets be scattered. (Kept out of the walk, whose other surfaces need few registers.)
+    /// Scatters what the throughput lets be scattered. (Kept out of the walk, whose other surfaces need few
+    /// registers.)
     #[inline(never)]
     pub fn scatter<C: Chooser, T: Throughput>(
         &self,
