@@ -133,6 +133,8 @@ fn weights_give_every_cell_the_light_of_the_file() {
     let scene = scene(&plate());
     let grids = Grids::new(&scene, &[24, 8]).unwrap();
     let traced = traced(&grids, 1 << 19);
+    // Photons have weights: sums are no whole numbers of photons, of 2^32 units each.
+    assert!(traced.1.iter().all(|sums| sums.iter().filter(|sum| *sum % (1 << 32) != 0).count() > 300));
     for (grid, (first, k)) in [(0, 24), (576, 8)].into_iter().enumerate() {
         let exact = plate_lx(k);
         assert_exact(&format!("{k} x {k}"), &traced, first, &exact);
