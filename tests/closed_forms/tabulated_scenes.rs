@@ -1,7 +1,7 @@
 //! Tabulated surfaces in closed scenes: against the Lambertian material, and where all light must end in one place.
 
 use caustix::emitter::{Emitter, Isotropic};
-use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
+use caustix::geometry::{Rectangle, Shape, Sphere, box_mesh};
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
 use caustix::scattering::ScatterTable;

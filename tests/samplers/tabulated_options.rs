@@ -4,7 +4,7 @@ use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{Frame, LobeSide, Quantity, ScatterTable};
 use caustix::sequence::independent::IndependentPoints;
 use caustix::surface::tabulated::{Energy, Options, Sides};
-use caustix::surface::{Event, Grey, Incidence, Leg, Model, Reference, Tabulated};
+use caustix::surface::{Event, Grey, Incidence, Model, Reference, Tabulated};
 use glam::DVec3;
 
 use crate::support::local::albedo;
