@@ -1,8 +1,8 @@
 //! The search structure changes nothing: brute force, AVX2 or not, order of surfaces, scale, place.
 
 use caustix::geometry::{
-    Facing, Formula, Geometry, Heightfield, Hit, Noise, Octave, Paraboloid, Rectangle, Shape, Sphere,
-    Surface, Transform, Whereabouts, box_mesh,
+    Formula, Geometry, Heightfield, Hit, Noise, Octave, Paraboloid, Rectangle, Shape, Sphere, Surface,
+    Transform, Whereabouts, box_mesh,
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! The side is state: exact shapes, open interfaces, nested bodies, starting points.
 
 use caustix::geometry::{
-    Facing, Formula, Geometry, Heightfield, Mesh, MeshParts, Paraboloid, Rectangle, Shape, Side, Smoothing,
-    Sphere, SurfaceId, Wave, Whereabouts, box_mesh,
+    Formula, Geometry, Heightfield, Mesh, MeshParts, Paraboloid, Rectangle, Shape, Side, Smoothing, Sphere,
+    SurfaceId, Wave, Whereabouts, box_mesh,
 };
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

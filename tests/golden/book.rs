@@ -6,8 +6,9 @@ use std::collections::BTreeMap;
 pub type Parts = Vec<(String, String)>;
 
 const HEAD: &str = "\
-# What caustix wrote before: run, file, and 16 hexadecimal digits of SHA-256 for each part of the file.
-# Made by the test beside this file; its head says how and when to make it anew.
+# What caustix wrote before: run, file, and for each part of the file a short value as it is or 16 hexadecimal
+# digits of SHA-256. `@name` is an EXR's attribute `caustix.name`. Made by the test beside this file; its head
+# says how and when to make it anew.
 ";
 
 /// Files whose pixels are a drawing of numbers, not numbers.
@@ -34,6 +35,12 @@ impl Book {
     pub fn only(&self, wanted: impl Fn(&str) -> bool) -> Self {
         let kept = self.files.iter().filter(|((run, _), _)| wanted(run));
         Self { files: kept.map(|(key, parts)| (key.clone(), parts.clone())).collect() }
+    }
+
+    /// Both together.
+    pub fn with(mut self, other: Self) -> Self {
+        self.files.extend(other.files);
+        self
     }
 
     /// As it stands in the repository.

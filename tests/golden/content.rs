@@ -25,9 +25,18 @@ const KEYS_LEFT_OUT: [&str; 10] = [
 /// Columns of a CSV that are times.
 const COLUMNS_LEFT_OUT: [&str; 2] = ["photons_per_s", "ratio_equal_time"];
 
+/// The longest number that JSON holds without loss.
+const LONGEST_TOLD: usize = 24;
+
 /// 16 hexadecimal digits of SHA-256.
 pub fn hash(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The text itself where it is short and one word, so that a difference shows both values; else its hash.
+pub fn told(text: &str) -> String {
+    let is_word = !text.is_empty() && text.bytes().all(|b| b.is_ascii_graphic() && b != b'=');
+    if is_word && text.len() <= LONGEST_TOLD { text.to_string() } else { hash(text.as_bytes()) }
 }
 
 /// The parts of a file and their hashes; `None` for one that tells times, which are not compared.
@@ -41,7 +50,8 @@ pub fn parts(path: &Path) -> Option<Parts> {
         "ply" => Some(ply(&read())),
         "png" => Some(png(path)),
         "svg" => Some(vec![("text".into(), hash(&read()))]),
-        // compare.md: its tables are those of compare.csv, with times between them; photons as saved: a binary file.
+        // compare.md: its tables are those of compare.csv, with times between them; photons as saved: a
+        // binary file.
         "md" | "map" => None,
         other => panic!("{}: no way to compare a file .{other}", path.display()),
     }
@@ -67,12 +77,13 @@ fn csv(text: &str) -> Parts {
 fn json(value: &Value) -> Parts {
     let mut parts = Parts::new();
     for (first, value) in entries(value) {
+        // A list of plain values is one part.
+        let is_plain = value.as_array().is_some_and(|list| list.iter().all(|v| !v.is_object()));
         let second = entries(value);
-        if second.is_empty() {
-            parts.push((first, hash(canonical(value).as_bytes())));
+        if second.is_empty() || is_plain {
+            parts.push((first, told(&canonical(value))));
         } else {
-            let named =
-                second.into_iter().map(|(key, v)| (format!("{first}.{key}"), hash(canonical(v).as_bytes())));
+            let named = second.into_iter().map(|(key, v)| (format!("{first}.{key}"), told(&canonical(v))));
             parts.extend(named);
         }
     }
@@ -90,7 +101,8 @@ fn entries(value: &Value) -> Vec<(String, &Value)> {
     }
 }
 
-/// The value as text with sorted keys, without what is left out. Of files that a scene names the names, not the hashes.
+/// The value as text with sorted keys, without what is left out. Of files that a scene names the names, not
+/// the hashes.
 fn canonical(value: &Value) -> String {
     match value {
         Value::Object(_) => {

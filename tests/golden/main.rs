@@ -1,20 +1,25 @@
-//! The same numbers as before, bit for bit: what the command writes is compared with hashes that were made earlier.
+//! The same numbers as before, bit for bit: what the command writes is compared with hashes that were made
+//! earlier.
 //!
-//! The scenes are those of `scenes/`, made small, and those of `scenes/` beside this file, which together name every
-//! emitter, material, shape, receiver and camera that a scene file can; beside them stand runs of the options. All is
-//! run with 1 and with 3 threads. Only the command line is used, nothing of the library: the test outlives any change
-//! of the code's inside.
+//! The scenes are those of `scenes/`, made small, and those of `scenes/` beside this file, which together
+//! name every emitter, material, shape, receiver and camera that a scene file can; beside them stand runs of
+//! the options. All is run with 1 and with 3 threads. Only the command line is used, nothing of the library:
+//! the test outlives any change of the code's inside.
 //!
-//! What is hashed is content, not bytes: of an EXR every channel's values and every attribute, of a CSV every column, of a PLY
-//! header and body, of JSON every key to the second level. Left out are times, the program's version, hashes of scenes and
-//! files, paths, memory and threads. Each of these parts has its own hash, so that a failure names it.
+//! What is hashed is content, not bytes: of an EXR every channel's values and every attribute, of a CSV every
+//! column, of a PLY header and body, of JSON every key to the second level. Left out are times, the program's
+//! version, hashes of scenes and files, paths, memory and threads. Each of these parts has its own hash, so
+//! that a failure names it.
 //!
 //! A change that means to change numbers is marked **Value-breaking** and makes the hashes anew:
 //!
 //!     CAUSTIX_GOLDEN_WRITE=tests/golden/hashes.txt cargo test --locked --release --test golden
 //!
-//! `CAUSTIX_GOLDEN_BIN=path` runs another binary than the one just built: an older one, to make the hashes from it. Pixels
-//! of PNGs and plots stand in a section of their own, `[drawings]`, since drawing may change where numbers do not.
+//! `CAUSTIX_GOLDEN_BIN=path` runs another binary than the one just built: an older one, to make the hashes
+//! from it. Pixels of PNGs and plots stand in a section of their own, `[drawings]`, since drawing may change
+//! where numbers do not.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod book;
 mod content;
@@ -22,7 +27,7 @@ mod openexr;
 mod runs;
 mod workplace;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use book::Book;
 use workplace::Workplace;
@@ -34,28 +39,30 @@ const MOST_TOLD: usize = 60;
 fn every_number_is_the_recorded_one_with_1_and_with_3_threads() {
     let workplace = Workplace::new();
     let runs = runs::all(&workplace);
-    let mut books = Vec::new();
-    for threads in [1, 3] {
+    let book_of = |threads: u32| {
         let mut book = Book::default();
-        for run in runs.iter().filter(|run| run.is_threaded || threads == 1) {
+        for run in runs.iter().filter(|run| run.is_with(threads)) {
             for (file, parts) in workplace.files_of(run, threads) {
                 book.add(&run.name, &file, parts);
             }
         }
-        books.push((threads, book));
-    }
-    let [(_, one), (_, three)] = &books[..] else { panic!("two numbers of threads") };
-    if let Some(path) = std::env::var_os("CAUSTIX_GOLDEN_WRITE").map(PathBuf::from) {
-        let threaded = |name: &str| runs.iter().any(|run| run.is_threaded && run.name == name);
-        fail_on("3 threads against 1 thread", &one.only(threaded).differences(three));
-        std::fs::write(&path, one.to_text()).unwrap();
+        book
+    };
+    let (one, three) = (book_of(1), book_of(3));
+    // Runs that are no longer there count as runs with either number of threads, so that they are missed.
+    let with = |threads: u32| {
+        let runs = &runs;
+        move |name: &str| runs.iter().find(|run| run.name == name).is_none_or(|run| run.is_with(threads))
+    };
+    if let Some(path) = std::env::var_os("CAUSTIX_GOLDEN_WRITE") {
+        fail_on("3 threads against 1 thread", &one.only(with(3)).differences(&three.only(with(1))));
+        std::fs::write(path, one.with(three).to_text()).unwrap();
         return;
     }
     let recorded = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/hashes.txt");
     let recorded = Book::from_text(&std::fs::read_to_string(recorded).unwrap());
-    fail_on("1 thread", &recorded.differences(one));
-    let threaded = |name: &str| !runs.iter().any(|run| !run.is_threaded && run.name == name);
-    fail_on("3 threads", &recorded.only(threaded).differences(three));
+    fail_on("1 thread", &recorded.only(with(1)).differences(&one));
+    fail_on("3 threads", &recorded.only(with(3)).differences(&three));
 }
 
 fn fail_on(what: &str, differences: &[String]) {

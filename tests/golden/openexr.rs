@@ -7,7 +7,7 @@ use exr::prelude::{
 };
 
 use crate::book::Parts;
-use crate::content::hash;
+use crate::content::{hash, told};
 
 /// What differs between versions and between copies of a scene that are one scene.
 const LEFT_OUT: [&str; 2] = ["caustix.version", "caustix.scene.sha256"];
@@ -66,12 +66,14 @@ fn attributes(
                 let text = utf8(text.as_slice());
                 text.split_once("  ").map_or(text.clone(), |(_, file)| file.to_string())
             }
-            AttributeValue::Text(text) => format!("text {}", utf8(text.as_slice())),
-            AttributeValue::F64(number) => format!("f64 {:016x}", number.to_bits()),
-            AttributeValue::F32(number) => format!("f32 {:08x}", number.to_bits()),
+            AttributeValue::Text(text) => utf8(text.as_slice()),
+            // The shortest digits that read back as the same bits.
+            AttributeValue::F64(number) => format!("{number:?}f64"),
+            AttributeValue::F32(number) => format!("{number:?}f32"),
             other => format!("{other:?}"),
         };
-        parts.push((format!("{prefix}{name}"), hash(text.as_bytes())));
+        let name = name.strip_prefix("caustix.").map_or(name.clone(), |own| format!("@{own}"));
+        parts.push((format!("{prefix}{name}"), told(&text)));
     }
 }
 

@@ -6,8 +6,29 @@ use crate::workplace::{OUT, Workplace};
 pub struct Run {
     pub name: String,
     pub lines: Vec<String>,
-    /// Whether the command has `--threads` (and `--quiet`).
-    pub is_threaded: bool,
+    pub threads: Threads,
+}
+
+/// With how many threads a run is done.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Threads {
+    /// 1, and again 3.
+    Both,
+    /// 3 alone: a run that cannot be made short.
+    Three,
+    /// The command has no `--threads`.
+    NotAsked,
+}
+
+impl Run {
+    /// Whether the run is one of those with this many threads.
+    pub fn is_with(&self, threads: u32) -> bool {
+        match self.threads {
+            Threads::Both => true,
+            Threads::Three => threads == 3,
+            Threads::NotAsked => threads == 1,
+        }
+    }
 }
 
 /// Photons of a run in which nothing depends on their number.
@@ -18,8 +39,8 @@ const OWN: &str = "tests/golden/scenes";
 /// Lies under every variant, sequence and solver: one lamp from a table, noise, a scattering table in colour.
 const ONE_EMITTER: &str = "tests/golden/scenes/one_emitter.toml";
 
-/// Every emitter at once, which most variants can choose among.
-const EMITTERS: &str = "tests/golden/scenes/emitters.toml";
+/// Two emitters, of a table and of a beam, and reliefs below them.
+const TWO_EMITTERS: &str = "tests/golden/scenes/reliefs.toml";
 
 const SEQUENCES: [&str; 18] = [
     "independent",
@@ -74,12 +95,12 @@ pub fn all(workplace: &Workplace) -> Vec<Run> {
     runs
 }
 
-fn add(runs: &mut Vec<Run>, is_threaded: bool, name: String, lines: &[String]) {
-    runs.push(Run { name, lines: lines.to_vec(), is_threaded });
+fn add(runs: &mut Vec<Run>, threads: Threads, name: String, lines: &[String]) {
+    runs.push(Run { name, lines: lines.to_vec(), threads });
 }
 
 fn render(runs: &mut Vec<Run>, name: String, arguments: &str) {
-    add(runs, true, name, &[format!("render {arguments} -o {OUT}")]);
+    add(runs, Threads::Both, name, &[format!("render {arguments} -o {OUT}")]);
 }
 
 fn scenes(workplace: &Workplace, runs: &mut Vec<Run>) {
@@ -93,7 +114,7 @@ fn scenes(workplace: &Workplace, runs: &mut Vec<Run>) {
                 _ => format!("--photons {PHOTONS}"),
             };
             render(runs, format!("{called} {scene}"), &format!("{path} {photons}"));
-            add(runs, false, format!("check {scene}"), &[format!("check {path} --json")]);
+            add(runs, Threads::NotAsked, format!("check {scene}"), &[format!("check {path} --json")]);
         }
     }
 }
@@ -105,17 +126,23 @@ fn options(runs: &mut Vec<Run>) {
         render(runs, format!("sequence {sequence}"), &arguments);
     }
     for variant in VARIANTS {
-        let arguments = format!("{ONE_EMITTER} --photons {PHOTONS} --variant {variant}");
+        // Each replicate of retries with the next point counts a million points ahead.
+        let replicates = if variant.ends_with(":next-point") { 2 } else { 8 };
+        let arguments =
+            format!("{ONE_EMITTER} --photons {PHOTONS} --variant {variant} --replicates {replicates}");
         render(runs, format!("variant {variant}"), &arguments);
     }
-    for variant in ["mc", "qmc:table", "qmc-inverse"] {
-        let arguments = format!("{EMITTERS} --photons 2^10 --variant {variant}");
-        render(runs, format!("emitters, variant {variant}"), &arguments);
+    for variant in ["mc", "mc:table", "qmc", "qmc-inverse"] {
+        let arguments = format!("{TWO_EMITTERS} --photons {PHOTONS} --variant {variant}");
+        render(runs, format!("two emitters, variant {variant}"), &arguments);
     }
+    render(
+        runs,
+        "every emitter, variant mc".into(),
+        &format!("{OWN}/emitters.toml --photons {PHOTONS} --variant mc"),
+    );
     // Enough photons for every thread to have a batch, and numbers that no power of two divides.
-    let many = format!("{ONE_EMITTER} --photons 100_002 --replicates 2 --seed 9");
-    render(runs, "many photons".into(), &many);
-    render(runs, "many photons, mc:next-point".into(), &format!("{many} --variant mc:next-point"));
+    render(runs, "many photons".into(), &format!("{ONE_EMITTER} --photons 100_002 --replicates 2 --seed 9"));
     render(
         runs,
         "many photons, picture".into(),
@@ -126,11 +153,7 @@ fn options(runs: &mut Vec<Run>) {
         "many photons, splat".into(),
         &format!("{OWN}/camera_splat.toml --photons 2^16 --replicates 1"),
     );
-    render(
-        runs,
-        "an odd number".into(),
-        &format!("{OWN}/reliefs.toml --photons 4.5e3 --replicates 7 --seed 3"),
-    );
+    render(runs, "an odd number".into(), &format!("{TWO_EMITTERS} --photons 4.5e3 --replicates 7 --seed 3"));
     for scene in
         ["scenes/glass_sphere.toml", "scenes/room.toml", "tests/golden/scenes/camera_splat_grey.toml"]
     {
@@ -145,27 +168,27 @@ fn pictures(runs: &mut Vec<Run>) {
         let traced = format!("render {OWN}/{scene}.toml --photons {PHOTONS} -o {OUT}");
         let lines =
             [format!("{traced} --save-map {OUT}/photons.map"), format!("{traced} --map {OUT}/photons.map")];
-        add(runs, true, format!("saved {scene}"), &lines);
+        add(runs, Threads::Both, format!("saved {scene}"), &lines);
     }
 }
 
 fn comparisons(runs: &mut Vec<Run>) {
-    let few = "--photons 2^10 --from 2^8 --reference-photons 2^12 --seeds 2";
-    let compare = format!("compare {few} --cells 8,16 -o {OUT}");
-    add(runs, true, "compare".into(), &[compare]);
-    let full = format!("compare {ONE_EMITTER} {few} --cells 12 --seed 5 --full -o {OUT}");
-    add(runs, true, "compare full".into(), &[full]);
+    let few = "--photons 2^10 --from 2^8 --reference-photons 2^12";
+    let compare = format!("compare {few} --seeds 2 --cells 8,16 -o {OUT}");
+    add(runs, Threads::Both, "compare".into(), &[compare]);
+    let full = format!("compare {ONE_EMITTER} {few} --seeds 1 --cells 12 --seed 5 --full -o {OUT}");
+    add(runs, Threads::Both, "compare full".into(), &[full]);
     let room = format!("compare {OWN}/small_room.toml --seeds 1 -o {OUT}");
-    add(runs, true, "compare room".into(), &[room]);
+    add(runs, Threads::Three, "compare room".into(), &[room]);
 }
 
 fn files(workplace: &Workplace, runs: &mut Vec<Run>) {
     for file in workplace.list("ies", ".ies") {
         let path = format!("ies/{file}");
         let lines = [format!("photometry {path} --json --plot {OUT}/plot.svg")];
-        add(runs, false, format!("photometry {file}"), &lines);
+        add(runs, Threads::NotAsked, format!("photometry {file}"), &lines);
         let lines = [format!("sample {path} -n 2^10 -o {OUT}/directions.csv --json")];
-        add(runs, false, format!("sample {file}"), &lines);
+        add(runs, Threads::NotAsked, format!("sample {file}"), &lines);
     }
     for variant in
         ["mc", "mc:table", "mc:next-point", "qmc", "qmc-inverse:ridder", "qmc-inverse-reuse:newton"]
@@ -173,19 +196,21 @@ fn files(workplace: &Workplace, runs: &mut Vec<Run>) {
         let line = format!(
             "sample ies/floodlight_b.ies -n 2^10 --variant {variant} --seed 4 -o {OUT}/directions.csv"
         );
-        add(runs, false, format!("sample, variant {variant}"), &[format!("{line} --json")]);
+        add(runs, Threads::NotAsked, format!("sample, variant {variant}"), &[format!("{line} --json")]);
     }
     let line =
         format!("sample ies/spot.ies -n 1000 --sequence lattice-rotation -o {OUT}/directions.csv --json");
-    add(runs, false, "sample, sequence lattice-rotation".into(), &[line]);
-    for (folder, ending) in [("brdf_tables", ".scatter"), (OWN, ".scatter"), (OWN, ".bsdf"), (OWN, ".xml")] {
+    add(runs, Threads::NotAsked, "sample, sequence lattice-rotation".into(), &[line]);
+    for (folder, ending) in
+        [("brdf_tables", ".scatter"), (OWN, ".scatter"), (OWN, ".bsdf"), (OWN, ".xml"), (OWN, ".binary")]
+    {
         for file in workplace.list(folder, ending) {
             let line = format!("bsdf {folder}/{file} --json --plot {OUT}/plot.svg");
-            add(runs, false, format!("bsdf {file}"), &[line]);
+            add(runs, Threads::NotAsked, format!("bsdf {file}"), &[line]);
         }
     }
     let line = format!("photometry ies/headlamp_a.ies --plot {OUT}/plot.png");
-    add(runs, false, "photometry as PNG".into(), &[line]);
+    add(runs, Threads::NotAsked, "photometry as PNG".into(), &[line]);
     let line = format!("bsdf brdf_tables/satin_pane.scatter --plot {OUT}/plot.png");
-    add(runs, false, "bsdf as PNG".into(), &[line]);
+    add(runs, Threads::NotAsked, "bsdf as PNG".into(), &[line]);
 }

@@ -1,4 +1,5 @@
-//! A folder with copies of the scenes and of what they name, in which the command runs: paths are the same everywhere.
+//! A folder with copies of the scenes and of what they name, in which the command runs: paths are the same
+//! everywhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::book::Parts;
 use crate::content;
-use crate::runs::Run;
+use crate::runs::{Run, Threads};
 
 /// Folders that scenes name files of, as they lie to each other in the repository.
 const FOLDERS: [&str; 4] = ["ies", "brdf_tables", "scenes", "tests/golden/scenes"];
@@ -23,14 +24,15 @@ pub struct Workplace {
 }
 
 impl Workplace {
-    /// A new one. Scenes lose their comments, so that another wording leaves `caustix.scene.text` as it is; those of
-    /// `scenes/` become small.
+    /// A new one. Scenes lose their comments, so that another wording leaves `caustix.scene.text` as it is;
+    /// those of `scenes/` become small.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         for name in FOLDERS {
             let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
             copy(&source, &folder.path().join(name), name == "scenes");
         }
+        fs::write(folder.path().join("tests/golden/scenes/measured.binary"), merl()).unwrap();
         let binary = std::env::var_os("CAUSTIX_GOLDEN_BIN").unwrap_or(env!("CARGO_BIN_EXE_caustix").into());
         Self { folder, binary: fs::canonicalize(binary).unwrap() }
     }
@@ -55,7 +57,7 @@ impl Workplace {
         for line in &run.lines {
             let mut command = Command::new(&self.binary);
             command.args(line.split_whitespace()).current_dir(self.folder.path());
-            if run.is_threaded {
+            if run.threads != Threads::NotAsked {
                 command.args(["--quiet", "--threads", &threads.to_string()]);
             }
             let output = command.output().unwrap();
@@ -73,6 +75,14 @@ impl Workplace {
         assert!(!files.is_empty(), "{} left nothing", run.name);
         files
     }
+}
+
+/// A MERL file: too long for the repository, and easily told.
+fn merl() -> Vec<u8> {
+    const COUNTS: [u32; 3] = [90, 90, 180];
+    let values =
+        (0..3 * COUNTS.iter().product::<u32>()).map(|i| 150.0 + 0.125 * f64::from(i % 997 * 7 % 800));
+    COUNTS.into_iter().flat_map(u32::to_le_bytes).chain(values.flat_map(f64::to_le_bytes)).collect()
 }
 
 fn copy(source: &Path, target: &Path, small: bool) {

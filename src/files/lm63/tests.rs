@@ -1,7 +1,9 @@
 //! Every quirk on a small file of its own.
 
 use crate::files::lm63::*;
-use crate::photometry::{OpeningShape, PhotometricType, Revision, Summary, Symmetry};
+use crate::photometry::opening::OpeningShape;
+use crate::photometry::web::Symmetry;
+use crate::photometry::{PhotometricType, Revision, Summary};
 
 /// A small file in parts, so that each test changes one of them.
 #[derive(Clone)]
