@@ -19,7 +19,6 @@ impl Model for Absorber {
         false
     }
 
-    #[inline]
     fn scatter<C: Chooser, T: Throughput>(&self, _: &Incidence, _: &mut C, _: &mut T) -> Event {
         Event::Absorbed
     }

@@ -96,7 +96,6 @@ impl Dielectric {
 impl Model for Dielectric {
     const REQUIRES: &[&str] = &["refraction"];
 
-    #[inline]
     fn kind(&self) -> Kind {
         Kind::Specular
     }
@@ -118,7 +117,6 @@ impl Model for Dielectric {
         Event::Leaves { direction, through, corrected }
     }
 
-    #[inline]
     fn specular(&self, at: &Incidence) -> Ways {
         let (r, way) = self.split(at);
         let way = |through, part, luminance_factor| {

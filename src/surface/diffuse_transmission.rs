@@ -44,7 +44,6 @@ impl DiffuseTransmission {
     }
 
     /// Both parts together.
-    #[inline]
     fn scattered(&self) -> [f64; 3] {
         let (reflected, transmitted) = (self.reflected.by_channel(), self.transmitted.by_channel());
         std::array::from_fn(|c| reflected[c] + transmitted[c])
@@ -54,7 +53,6 @@ impl DiffuseTransmission {
 impl Model for DiffuseTransmission {
     const REQUIRES: &[&str] = &["diffuse scattering", "diffuse transmission"];
 
-    #[inline]
     fn kind(&self) -> Kind {
         if luminance(self.scattered()) > 0.0 { Kind::Scattering } else { Kind::Absorbing }
     }
@@ -79,7 +77,6 @@ impl Model for DiffuseTransmission {
         Event::Leaves { direction: sample_cosine(normal, chooser), through, corrected: false }
     }
 
-    #[inline]
     fn eval(&self, _outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
         value(if wi.front == wo.front { &self.reflected } else { &self.transmitted })
     }

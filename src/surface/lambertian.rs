@@ -34,7 +34,6 @@ impl Lambertian {
 impl Model for Lambertian {
     const REQUIRES: &[&str] = &["diffuse scattering"];
 
-    #[inline]
     fn kind(&self) -> Kind {
         if self.reflectance.luminous() > 0.0 { Kind::Scattering } else { Kind::Absorbing }
     }
@@ -57,7 +56,6 @@ impl Model for Lambertian {
         if wi.front == wo.front { value(&self.reflectance) } else { [0.0; 3] }
     }
 
-    #[inline]
     fn even_value(&self) -> Option<[f64; 3]> {
         Some(value(&self.reflectance))
     }

@@ -29,7 +29,6 @@ impl Mirror {
 impl Model for Mirror {
     const REQUIRES: &[&str] = &["mirror reflection"];
 
-    #[inline]
     fn kind(&self) -> Kind {
         Kind::Specular
     }
@@ -48,7 +47,6 @@ impl Model for Mirror {
         Event::Leaves { direction, through: false, corrected }
     }
 
-    #[inline]
     fn specular(&self, at: &Incidence) -> Ways {
         let way =
             Way { direction: reflected(at).0, part: self.reflectance.by_channel(), luminance_factor: 1.0 };

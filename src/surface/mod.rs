@@ -150,17 +150,14 @@ pub trait Model {
     /// [`Material::scatter`].
     fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, carried: &mut T) -> Event;
     /// [`Material::eval`].
-    #[inline]
     fn eval(&self, _outward: DVec3, _wi: Leg, _wo: Leg) -> [f64; 3] {
         [0.0; 3]
     }
     /// [`Material::even_value`].
-    #[inline]
     fn even_value(&self) -> Option<[f64; 3]> {
         None
     }
     /// [`Material::specular`].
-    #[inline]
     fn specular(&self, _at: &Incidence) -> Ways {
         Ways::default()
     }
@@ -180,7 +177,6 @@ pub trait Model {
 
 impl Material {
     /// Which of three kinds it is.
-    #[inline]
     pub fn kind(&self) -> Kind {
         ask!(self, kind())
     }
@@ -227,7 +223,6 @@ impl Material {
 
     /// f where it is the same for all wi and wo of one side and 0 for those of different sides, 1/sr, by
     /// channel.
-    #[inline]
     pub fn even_value(&self) -> Option<[f64; 3]> {
         ask!(self, even_value())
     }
@@ -235,13 +230,11 @@ impl Material {
     /// Density, 1/sr in solid angle, of the directions into which [`Self::scatter`] sends photons of white
     /// light from wi, times the probability that it scatters them: the luminance of f times the cosine of wo.
     /// Its integral over all wo is the luminous albedo, less what goes on specularly or below the horizon.
-    #[inline]
     pub fn pdf(&self, outward: DVec3, wi: Leg, wo: Leg) -> f64 {
         luminance(self.eval(outward, wi, wo)) * wo.direction.dot(outward).abs()
     }
 
     /// Where an eye path goes on to that arrived: light comes from there to the eye.
-    #[inline]
     pub fn specular(&self, at: &Incidence) -> Ways {
         ask!(self, specular(at))
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Invalid;
 use crate::math::frame::{frame_about, unit};
 
 /// Where azimuth 0 is at every place of a surface, told from the outward normal there alone.
@@ -22,30 +22,20 @@ impl Default for Reference {
 }
 
 impl Reference {
-    /// The same with a unit vector, which [`Self::tangent`] relies on.
+    /// The same with a unit vector, which [`Self::along`] relies on.
     ///
     /// # Errors
     /// A vector without direction.
-    pub fn normalised(self) -> Result<Self> {
-        let unit = |v: DVec3| {
-            unit(v).ok_or_else(|| {
-                Diagnostic::new(Kind::Range, format!("the reference direction {v}"), "a direction")
-            })
-        };
+    pub fn normalised(self) -> Result<Self, Invalid> {
+        let unit = |value| unit(value).ok_or(Invalid::NoDirection { what: "reference", value });
         Ok(match self {
             Self::Along(direction) => Self::Along(unit(direction)?),
             Self::Around(axis) => Self::Around(unit(axis)?),
         })
     }
 
-    /// The unit reference direction across the unit normal `outward`. Where the normal is the direction or
-    /// axis itself, some fixed one stands in.
-    #[inline]
-    pub fn tangent(&self, outward: DVec3) -> DVec3 {
-        self.along(outward).normalize()
-    }
-
-    /// The same of any length: angles need no more.
+    /// The reference direction across the unit normal `outward`, of any length. Where the normal is the
+    /// direction or axis itself, some fixed one stands in.
     #[inline]
     pub fn along(&self, outward: DVec3) -> DVec3 {
         let along = match *self {
@@ -62,6 +52,10 @@ impl Reference {
 mod tests {
     use super::*;
 
+    fn tangent(reference: &Reference, outward: DVec3) -> DVec3 {
+        reference.along(outward).normalize()
+    }
+
     fn close(a: DVec3, b: DVec3) -> bool {
         (a - b).length() < 1e-14
     }
@@ -69,10 +63,10 @@ mod tests {
     #[test]
     fn straight_brushing_is_projected() {
         let reference = Reference::Along(DVec3::new(3.0, 0.0, 4.0)).normalised().unwrap();
-        assert!(close(reference.tangent(DVec3::Z), DVec3::X));
-        assert!(close(reference.tangent(-DVec3::Z), DVec3::X), "the same on both sides");
-        assert!(close(reference.tangent(DVec3::X), DVec3::Z));
-        assert!(close(reference.tangent(DVec3::Y), DVec3::new(0.6, 0.0, 0.8)));
+        assert!(close(tangent(&reference, DVec3::Z), DVec3::X));
+        assert!(close(tangent(&reference, -DVec3::Z), DVec3::X), "the same on both sides");
+        assert!(close(tangent(&reference, DVec3::X), DVec3::Z));
+        assert!(close(tangent(&reference, DVec3::Y), DVec3::new(0.6, 0.0, 0.8)));
     }
 
     #[test]
@@ -81,8 +75,8 @@ mod tests {
         // Seen from the tip of z, counter-clockwise: at x it goes towards y, at y towards -x.
         for side in [1.0, -1.0] {
             let slanted = |x: f64, y: f64| DVec3::new(0.6 * x, 0.6 * y, 0.8) * side;
-            assert!(close(reference.tangent(slanted(1.0, 0.0)), DVec3::Y * side));
-            assert!(close(reference.tangent(slanted(0.0, 1.0)), -DVec3::X * side));
+            assert!(close(tangent(&reference, slanted(1.0, 0.0)), DVec3::Y * side));
+            assert!(close(tangent(&reference, slanted(0.0, 1.0)), -DVec3::X * side));
         }
     }
 
@@ -91,7 +85,7 @@ mod tests {
         let references = [DVec3::X, DVec3::Y, DVec3::Z].map(|d| [Reference::Along(d), Reference::Around(d)]);
         for reference in references.into_iter().flatten() {
             for normal in [DVec3::X, -DVec3::Y, DVec3::Z, DVec3::new(0.0, 1e-300, 1.0)] {
-                let tangent = reference.tangent(normal);
+                let tangent = tangent(&reference, normal);
                 assert!((tangent.length() - 1.0).abs() < 1e-15 && tangent.dot(normal).abs() < 1e-15);
             }
         }

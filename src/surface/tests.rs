@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::*;
 use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::scattering::{Frame, LobeData, LobeSide, Quantity, ScatterTable};
 use crate::sequence::owen::OwenPoints;
+use crate::surface::tabulated::Options;
 
 /// A chooser that follows a script: events and uniforms in order. It panics when it runs out, so a test also
 /// counts what is asked for.
@@ -218,4 +220,27 @@ fn every_answer_fits_the_others() {
     assert!(lambertian(0.0).requires().is_empty() && !lambertian(0.0).scatters());
     assert_eq!(lambertian(0.5).even_value(), Some([0.5 * FRAC_1_PI; 3]));
     assert_eq!(memory_bytes(&all()), 0);
+}
+
+#[test]
+fn copies_of_a_table_are_held_once() {
+    let lobe = LobeData {
+        quantity: Quantity::Reflection,
+        side: LobeSide::Both,
+        frame: Frame::Surface,
+        theta_i_deg: vec![0.0],
+        phi_i_deg: vec![0.0],
+        polar_deg: vec![0.0, 90.0],
+        azimuth_deg: vec![0.0, 360.0],
+        channels: 1,
+        values: vec![0.1; 4],
+        declared_tis: Vec::new(),
+    };
+    let table = ScatterTable::new("even", vec![lobe], Vec::new()).unwrap();
+    let made = || Material::Tabulated(Box::new(Tabulated::new(&table, &Options::default()).unwrap().0));
+    let (one, other) = (made(), made());
+    let bytes = memory_bytes(&[one.clone()]);
+    assert!(bytes > 0);
+    assert_eq!(memory_bytes(&[one.clone(), Material::Absorber, one.clone()]), bytes);
+    assert_eq!(memory_bytes(&[one, other]), 2 * bytes);
 }
