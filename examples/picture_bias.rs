@@ -6,15 +6,20 @@
 #[path = "../tests/support/caustic_views.rs"]
 mod views;
 
+#[path = "../tests/pictures/picture_bias.rs"]
+mod bias;
+
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
 use caustix::error::Diagnostic;
-use caustix::lab::study::picture_bias::{Row, mapped, rate, splatted};
-use caustix::plot::canvas::{Anchor, Colour, TextStyle};
+use caustix::plot::canvas::{Anchor, TextStyle};
 use caustix::plot::drawing::{Drawing, Pen, Shape};
+use caustix::report::colour::Colour;
 use caustix::scene::camera::{Bandwidth, Camera};
+
+use bias::{Row, mapped, rate, splatted};
 
 /// 2^m photons of the reference, its replicates, its seed.
 const REFERENCE: (u32, u32, u64) = (24, 16, 1000);
@@ -43,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     std::fs::write(Path::new(&folder).join("picture_bias.csv"), csv(&all))?;
-    drawing(&all).write_svg(Path::new(&folder).join("picture_bias.svg"))?;
+    drawing(&all).write(&Path::new(&folder).join("picture_bias.svg"))?;
     Ok(())
 }
 

@@ -6,6 +6,7 @@ use crate::emitter::Emits;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
 use crate::picture;
+use crate::report::numbers::digits;
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
@@ -145,7 +146,7 @@ impl Check {
     fn text(&self, name: &str) -> String {
         let mut out = format!("{name}: ready to trace\n\nrequires   {}\n", self.requires.join(", "));
         for e in &self.emitters {
-            out += &format!("emitter    {}: {} lm\n", e.name, crate::report::text::digits(e.flux_emitted_lm));
+            out += &format!("emitter    {}: {} lm\n", e.name, digits(e.flux_emitted_lm));
         }
         for s in &self.surfaces {
             let edges = match (s.triangles, s.open_edges) {
@@ -153,16 +154,10 @@ impl Check {
                 (n, 0) => format!("{n} triangles, closed"),
                 (n, open) => format!("{n} triangles, {open} open edges"),
             };
-            out +=
-                &format!("surface    {}: {edges}, {} m2\n", s.name, crate::report::text::digits(s.area_m2));
+            out += &format!("surface    {}: {edges}, {} m2\n", s.name, digits(s.area_m2));
         }
         for r in &self.receivers {
-            out += &format!(
-                "receiver   {}: {} cells, {} m2\n",
-                r.name,
-                r.cells,
-                crate::report::text::digits(r.area_m2)
-            );
+            out += &format!("receiver   {}: {} cells, {} m2\n", r.name, r.cells, digits(r.area_m2));
         }
         if let Some(c) = &self.camera {
             let [columns, rows] = c.pixels;

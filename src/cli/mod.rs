@@ -1,23 +1,25 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
-pub mod bsdf;
-pub mod check;
-pub mod compare;
-mod compare_room;
-pub mod photometry;
-mod picture;
 mod progress;
-pub mod render;
-pub mod sample;
+mod picture;
+mod render;
+mod photometry;
+mod check;
+mod compare;
+mod sample;
+mod bsdf;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{Args, Parser, Subcommand};
 
-use crate::error::{Diagnostic, Kind};
+use crate::error::{Diagnostic, Kind, Result};
 use crate::files::scene_toml::count::parse_count;
-use crate::run::MAX_REPLICATES;
+use crate::plot::drawing::Drawing;
+use crate::run::{Algorithm, MAX_REPLICATES};
+use crate::sequence::Sequence;
 
 /// Exit codes of the contract.
 pub mod exit {
@@ -61,6 +63,13 @@ enum Sub {
     Bsdf(BsdfArgs),
 }
 
+/// `caustix` without a subcommand.
+#[derive(Debug, Parser)]
+struct RenderCommand {
+    #[command(flatten)]
+    args: RenderArgs,
+}
+
 /// Arguments of `caustix render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
@@ -95,39 +104,9 @@ pub struct RenderArgs {
     /// Trace nothing: the camera's picture of photons saved by --save-map under the same settings.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
-    /// Not available yet.
-    #[arg(long, value_name = "PERCENT", hide = true)]
-    pub error: Option<String>,
-    /// Not available yet.
-    #[arg(long, value_name = "SECONDS", hide = true)]
-    pub time: Option<String>,
-    /// Not available yet.
-    #[arg(long, hide = true)]
-    pub resume: bool,
     /// No progress bar and no summary.
     #[arg(long)]
     pub quiet: bool,
-}
-
-impl Default for RenderArgs {
-    fn default() -> Self {
-        Self {
-            scene: None,
-            output: PathBuf::from("caustix-out"),
-            photons: None,
-            variant: None,
-            sequence: None,
-            seed: None,
-            replicates: None,
-            threads: None,
-            save_map: None,
-            map: None,
-            error: None,
-            time: None,
-            resume: false,
-            quiet: false,
-        }
-    }
 }
 
 /// Arguments of `caustix photometry`.
@@ -191,33 +170,65 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
+/// What is not built, and what there is instead.
+const INSTEAD: [(&str, &str); 3] = [
+    ("--error", "--photons N sets the effort; the summary and report.json tell the standard errors it gave"),
+    ("--time", "--photons N sets the effort; Ctrl-C ends a run early and writes what there is"),
+    (
+        "--resume",
+        "a run starts with its first photon; `caustix compare` goes on from the parts it has finished",
+    ),
+];
+
+/// Adds to an unknown option of [`INSTEAD`] what there is instead.
+fn with_hint(mut error: clap::Error) -> clap::Error {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return error };
+    if let Some((_, instead)) = INSTEAD.iter().find(|(unbuilt, _)| unbuilt == option) {
+        error.remove(ContextKind::SuggestedArg);
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![(*instead).into()]));
+    }
+    error
+}
+
+/// Why a subcommand did not do what it was asked for.
+struct Failure(Vec<Diagnostic>);
+
+impl From<Diagnostic> for Failure {
+    fn from(error: Diagnostic) -> Self {
+        Self(vec![error])
+    }
+}
+
+impl From<Vec<Diagnostic>> for Failure {
+    fn from(errors: Vec<Diagnostic>) -> Self {
+        Self(errors)
+    }
+}
+
+/// The exit code of a subcommand, or why it failed.
+type Done = std::result::Result<u8, Failure>;
+
 /// Runs the command with the arguments of the process.
 pub fn main() -> ExitCode {
-    let command = match Command::try_parse() {
-        Ok(command) => command,
+    let parsed = Command::try_parse().and_then(|command| match command.subcommand {
+        Some(subcommand) => Ok(subcommand),
+        None => Ok(Sub::Render(RenderCommand::try_parse_from(["caustix"])?.args)),
+    });
+    let done = match parsed.map_err(with_hint) {
         Err(error) => {
             // Help and version are no errors; clap writes either to where it belongs.
             let code = if error.use_stderr() { exit::USAGE } else { exit::DONE };
             let _printed = error.print();
             return ExitCode::from(code);
         }
+        Ok(Sub::Render(args)) => render::run(&args),
+        Ok(Sub::Photometry(args)) => photometry::run(&args),
+        Ok(Sub::Check(args)) => Ok(check::run(&args)),
+        Ok(Sub::Compare(args)) => compare::run(&args),
+        Ok(Sub::Sample(args)) => sample::run(&args),
+        Ok(Sub::Bsdf(args)) => bsdf::run(&args),
     };
-    let code = match command.subcommand {
-        None => render::run(&RenderArgs::default()),
-        Some(Sub::Render(args)) => render::run(&args),
-        Some(Sub::Photometry(args)) => photometry::run(&args),
-        Some(Sub::Check(args)) => check::run(&args),
-        Some(Sub::Compare(args)) => compare::run(&args),
-        Some(Sub::Sample(args)) => sample::run(&args),
-        Some(Sub::Bsdf(args)) => bsdf::run(&args),
-    };
-    ExitCode::from(code)
-}
-
-/// Says that something of the contract is not built yet.
-fn not_available(what: &str) -> u8 {
-    say(&format!("caustix: {what} is not available yet"));
-    exit::USAGE
+    ExitCode::from(done.unwrap_or_else(|Failure(errors)| fail(&errors)))
 }
 
 /// A line to stderr; a closed stderr is no reason to fail.
@@ -239,7 +250,7 @@ fn fail(errors: &[Diagnostic]) -> u8 {
     for error in errors {
         say(&format!("error: {error}"));
     }
-    exit::WRONG
+    if errors.iter().any(|e| e.kind() == Kind::Interrupted) { exit::INTERRUPTED } else { exit::WRONG }
 }
 
 /// Says warnings.
@@ -251,14 +262,37 @@ fn warn(warnings: &[Diagnostic]) {
 
 /// A whole number given on the command line; `LOW` and `HIGH` are for the message, and are enforced where the number is
 /// used. clap puts the option and the text before the message.
-fn whole<T: TryFrom<u64>, const LOW: u64, const HIGH: u64>(text: &str) -> Result<T, String> {
+fn whole<T: TryFrom<u64>, const LOW: u64, const HIGH: u64>(text: &str) -> std::result::Result<T, String> {
     let value = text.parse::<u64>().ok().and_then(|n| T::try_from(n).ok());
     value.ok_or_else(|| format!("required: a whole number from {LOW} to {HIGH}"))
 }
 
+/// What is wrong with an option: its name before what was found.
+fn in_option(option: &str, error: &Diagnostic) -> Diagnostic {
+    Diagnostic::new(error.kind(), format!("{option}{}", error.found()), error.required().to_string())
+}
+
 /// A count given on the command line.
-fn count(option: &str, text: Option<&String>) -> Result<Option<u64>, Diagnostic> {
-    text.map(|t| parse_count(t)).transpose().map_err(|e| {
-        Diagnostic::new(Kind::Range, format!("{option} {}", e.found()), e.required().to_string())
-    })
+fn count(option: &str, text: Option<&String>) -> Result<Option<u64>> {
+    text.map(|t| parse_count(t).map_err(|e| in_option(&format!("{option} "), &e))).transpose()
+}
+
+/// A variant and a sequence given on the command line; `default` where no variant is.
+fn algorithm(default: Algorithm, variant: Option<&String>, sequence: Option<&String>) -> Result<Algorithm> {
+    let parse = |name: &String| Algorithm::parse(name).map_err(|e| in_option("--", &e));
+    let mut algorithm = variant.map_or(Ok(default), parse)?;
+    if let Some(name) = sequence {
+        algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {
+            let names: Vec<_> = Sequence::ALL.iter().map(|s| s.name()).collect();
+            let required = format!("one of: {}", names.join(", "));
+            Diagnostic::new(Kind::Unknown, format!("--sequence {name}"), required)
+        })?;
+    }
+    Ok(algorithm)
+}
+
+/// Writes a drawing where `--plot` asks for one; the ending of the name says as what.
+fn plot(path: Option<&PathBuf>, drawing: impl FnOnce() -> Drawing) -> Result<()> {
+    let Some(path) = path else { return Ok(()) };
+    drawing().write(path).map_err(|e| if e.kind() == Kind::Range { in_option("--plot ", &e) } else { e })
 }

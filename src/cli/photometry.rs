@@ -1,164 +1,23 @@
 //! `caustix photometry`: what a lighting engineer wants to read about a file.
 
-use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::write_atomically;
 use crate::files::lm63;
-use crate::files::lm63::generation_type;
-use crate::photometry::{Photometry, Revision, Summary, Tilt};
-use crate::report::candela::polar_plot;
-use std::fmt::Write;
-use std::path::Path;
+use crate::photometry::Summary;
+use crate::plot::candela;
+use crate::report::json::json;
+use crate::report::photometry::text;
 
-use super::{PhotometryArgs, exit, fail, print, warn};
+use super::{Done, PhotometryArgs, exit, plot, print, warn};
 
 /// Runs the subcommand; the exit code.
-pub fn run(args: &PhotometryArgs) -> u8 {
-    match show(args) {
-        Ok(()) => exit::DONE,
-        Err(error) => fail(&[error]),
-    }
-}
-
-fn show(args: &PhotometryArgs) -> Result<()> {
+pub(super) fn run(args: &PhotometryArgs) -> Done {
     let photometry = lm63::read(&args.file)?;
     let summary = Summary::new(&photometry);
-    if let Some(path) = &args.plot {
-        plot(path, &photometry, &summary)?;
-    }
+    plot(args.plot.as_ref(), || candela::drawing(&photometry, &summary))?;
     if args.json {
-        let text = serde_json::to_string_pretty(&summary).map_err(|e| {
-            Diagnostic::new(Kind::Io, format!("\"{e}\" while writing JSON"), "numbers that JSON can hold")
-        })?;
-        print(&(text + "\n"));
+        print(&json(&summary)?);
     } else {
         warn(&photometry.warnings);
-        print(&report_text(&photometry, &summary));
+        print(&text(&photometry, &summary));
     }
-    Ok(())
-}
-
-/// Writes the polar candela diagram; the ending of the name says as what.
-fn plot(path: &Path, photometry: &Photometry, summary: &Summary) -> Result<()> {
-    let plot = polar_plot(photometry, summary);
-    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    match ending.as_deref() {
-        Some("svg") => {
-            use std::io::Write;
-            write_atomically(path, |out| out.write_all(plot.to_svg().as_bytes()))
-        }
-        Some("png") => plot.to_png(path),
-        _ => Err(Diagnostic::new(
-            Kind::Range,
-            format!("--plot {}", path.display()),
-            "a name ending in .svg or .png",
-        )),
-    }
-}
-
-/// The report for a terminal: one quantity a line, names aligned, units behind the numbers.
-pub fn report_text(photometry: &Photometry, summary: &Summary) -> String {
-    let mut out = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{name:<20}{value}");
-    };
-    line("file", photometry.file.clone());
-    line("format", format!("{} {}, type {}", summary.format, edition(photometry), summary.photometric_type));
-    for keyword in ["MANUFAC", "LUMINAIRE", "LUMCAT", "LAMP"] {
-        if let Some(text) = photometry.label(keyword).filter(|text| !text.is_empty()) {
-            line(&keyword.to_ascii_lowercase(), printable(text));
-        }
-    }
-    line("flux", lumens(summary.flux_lm, "value x multiplier, trapezoid"));
-    line("flux with factors", lumens(summary.flux_with_factors_lm, &factors(photometry)));
-    line("flux emitted", lumens(summary.flux_emitted_lm, "bilinear table, exact, with factors"));
-    if let Some(declared) = summary.flux_declared_lm {
-        line("flux declared", lumens(declared, "[_TOTALLUMINAIRELUMENS]"));
-    }
-    if let Some(lumens_per_lamp) = photometry.lumens_per_lamp {
-        line("lamps", format!("{} x {} lm", photometry.lamps, lumens_per_lamp));
-    } else {
-        line("lamps", format!("{}, absolute photometry", photometry.lamps));
-    }
-    let at = summary.max_at;
-    let place = format!("at V {} deg, H {} deg", at.vertical_deg, at.horizontal_deg);
-    line("maximum", format!("{:>12.1} cd   {place}", summary.max_candela));
-    line("beam angle (50 %)", degrees(summary.beam_angle_deg));
-    line("field angle (10 %)", degrees(summary.field_angle_deg));
-    line(
-        "angles",
-        format!("{} vertical x {} horizontal", summary.vertical_angles, summary.horizontal_angles),
-    );
-    line("symmetry", summary.symmetry.to_owned());
-    let [width, length, height] = summary.luminous_opening.size_m;
-    let size = format!("{width:.3} x {length:.3} x {height:.3} m (width x length x height)");
-    line("luminous opening", format!("{}, {size}", summary.luminous_opening.shape));
-    if photometry.tilt != Tilt::None {
-        line("tilt", "a table, not applied to the intensities".to_owned());
-    }
-    match summary.efficacy_lm_w {
-        Some(efficacy) => {
-            line("input power", format!("{:>12.1} W    {efficacy:.1} lm/W", summary.input_watts))
-        }
-        None => line("input power", "not stated".to_owned()),
-    }
-    for warning in &summary.warnings {
-        line("warning", printable(warning));
-    }
-    out
-}
-
-fn edition(photometry: &Photometry) -> String {
-    let name = photometry.revision.name();
-    match generation_type(&photometry.field12_text).filter(|_| photometry.revision == Revision::Y2019) {
-        Some(kind) => format!("{name} ({kind})"),
-        None => name.to_owned(),
-    }
-}
-
-fn factors(photometry: &Photometry) -> String {
-    if photometry.revision.field12_is_factor() {
-        format!("x ballast {} x ballast-lamp {}", photometry.ballast_factor, photometry.field12)
-    } else {
-        format!("x ballast {}", photometry.ballast_factor)
-    }
-}
-
-fn lumens(flux_lm: f64, how: &str) -> String {
-    format!("{flux_lm:>12.1} lm   {how}")
-}
-
-fn degrees(angle_deg: Option<f64>) -> String {
-    angle_deg
-        .map_or("none: the plane is dark".to_owned(), |angle| format!("{angle:>12.1} deg  principal plane"))
-}
-
-/// Labels come from files: control characters must not reach a terminal.
-fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::files::lm63;
-
-    #[test]
-    fn the_report_names_quantities_and_units() {
-        let text = "IESNA91\n[LUMINAIRE] a\x1b[31mb\n[MORE] c\nTILT=NONE\n1 -1 2 3 1 1 2 -0.1 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0 9\n";
-        let photometry = lm63::parse(text.as_bytes(), "small.ies").unwrap();
-        let report = report_text(&photometry, &Summary::new(&photometry));
-        for line in [
-            "luminaire           a [31mb c",
-            "flux                       147.0 lm   value x multiplier, trapezoid",
-            "flux with factors           66.1 lm   x ballast 0.5 x ballast-lamp 0.9",
-            "maximum                    200.0 cd   at V 0 deg, H 0 deg",
-            "beam angle (50 %)           40.0 deg  principal plane",
-            "luminous opening    disk, 0.100 x 0.100 x 0.000 m (width x length x height)",
-            "input power                 10.0 W    6.6 lm/W",
-        ] {
-            assert!(report.lines().any(|l| l == line), "{line}\n{report}");
-        }
-        assert!(report.contains("surplus") && !report.contains('\u{1b}'), "{report}");
-    }
+    Ok(exit::DONE)
 }

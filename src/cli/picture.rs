@@ -5,12 +5,15 @@ use std::path::Path;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
 use crate::files::bytes::read_capped;
+use crate::files::exr::Value;
 use crate::files::photon_map;
 use crate::picture;
+use crate::picture::camera::Film;
 use crate::picture::photon_map::SavedMap;
 use crate::picture::{AnyPicture, PictureSummary, Watch, check_saved, hash_of_photons, picture_of_saved};
+use crate::plot::picture::{write_luminance_png, write_png};
 use crate::report::camera::CameraReport;
-use crate::report::picture::{camera_attributes, write_camera};
+use crate::report::picture::{camera_attributes, write_exr};
 use crate::run::Plan;
 use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
@@ -37,22 +40,14 @@ pub(super) fn check(args: &RenderArgs, scene: &Scene) -> Result<()> {
             "a scene with a camera: photons are kept for it alone",
         ));
     };
-    let splat = spec.method == Method::Splat;
-    if splat && args.map.is_some() {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            "--map and method \"splat\"",
-            "method = \"map\": splatting joins photons to the pinhole while they are traced",
-        ));
-    }
-    if splat && args.save_map.is_some() {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            "--save-map and method \"splat\"",
-            "method = \"map\": splatting keeps no photons",
-        ));
-    }
-    picture::check(scene)
+    let (option, required) = match (spec.method, &args.map, &args.save_map) {
+        (Method::Splat, Some(_), _) => {
+            ("--map", "method = \"map\": splatting joins photons to the pinhole while they are traced")
+        }
+        (Method::Splat, None, Some(_)) => ("--save-map", "method = \"map\": splatting keeps no photons"),
+        _ => return picture::check(scene),
+    };
+    Err(Diagnostic::new(Kind::Range, format!("{option} and method \"splat\""), required))
 }
 
 /// Photons from a file, in one channel or three.
@@ -69,25 +64,21 @@ pub(super) fn read(path: &Path, scene: &Scene, plan: &Plan) -> Result<AnyMap> {
     let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
     let hash = hash_of_photons(scene, plan);
     let in_file = |e: Diagnostic| e.in_file(path);
-    // Of the same scene, yet of another number of channels: the camera that the photons were traced for saw another background,
-    // in colour or not.
-    let saved = match (photon_map::channels(&bytes).map_err(in_file)?, scene.is_coloured()) {
-        (3, true) => AnyMap::Rgb(photon_map::read(&bytes, &hash).map_err(in_file)?),
-        (3, false) => {
-            let saved = photon_map::read::<3>(&bytes, &hash).map_err(in_file)?;
-            AnyMap::Grey(saved.in_channels())
-        }
-        (_, true) => {
-            let saved = photon_map::read::<1>(&bytes, &hash).map_err(in_file)?;
-            AnyMap::Rgb(saved.in_channels())
-        }
-        (_, false) => AnyMap::Grey(photon_map::read(&bytes, &hash).map_err(in_file)?),
+    Ok(if scene.is_coloured() {
+        AnyMap::Rgb(in_channels(&bytes, &hash, scene).map_err(in_file)?)
+    } else {
+        AnyMap::Grey(in_channels(&bytes, &hash, scene).map_err(in_file)?)
+    })
+}
+
+/// The photons in a scene's channels. Those of the same scene may have others: the camera that they were traced for saw another
+/// background, in colour or not.
+fn in_channels<const C: usize>(bytes: &[u8], hash: &str, scene: &Scene) -> Result<SavedMap<C>> {
+    let saved = match photon_map::channels(bytes)? {
+        3 => photon_map::read::<3>(bytes, hash)?.in_channels(),
+        _ => photon_map::read::<1>(bytes, hash)?.in_channels(),
     };
-    match &saved {
-        AnyMap::Grey(map) => check_saved(scene, map),
-        AnyMap::Rgb(map) => check_saved(scene, map),
-    }
-    .map_err(in_file)?;
+    check_saved(scene, &saved)?;
     Ok(saved)
 }
 
@@ -132,7 +123,7 @@ fn save_map<const C: usize>(
 /// Writes the camera's files into a directory that exists, and says what they are.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A file that cannot be written; files written before it stay.
 pub(super) fn write(
     directory: &Path,
     scene: &Scene,
@@ -143,8 +134,25 @@ pub(super) fn write(
     let summary = picture.summary();
     let attributes = camera_attributes(scene, plan, summary.photons, summary.replicates, spec);
     let files = match picture {
-        AnyPicture::Grey(picture) => write_camera(directory, "camera", spec, &picture.film, &attributes)?,
-        AnyPicture::Rgb(picture) => write_camera(directory, "camera", spec, &picture.film, &attributes)?,
+        AnyPicture::Grey(picture) => write_film(directory, spec, &picture.film, &attributes)?,
+        AnyPicture::Rgb(picture) => write_film(directory, spec, &picture.film, &attributes)?,
     };
     Ok(CameraReport::new(spec, summary, &files))
+}
+
+fn write_film<const C: usize>(
+    directory: &Path,
+    spec: &CameraSpec,
+    film: &Film<C>,
+    attributes: &[(String, Value)],
+) -> Result<Vec<String>> {
+    let mut files = vec!["camera.exr".to_string(), "camera.png".to_string()];
+    write_exr(&directory.join(&files[0]), spec, film, attributes)?;
+    write_png(&directory.join(&files[1]), spec, film)?;
+    if spec.false_colour {
+        let file = "camera_luminance.png".to_string();
+        write_luminance_png(&directory.join(&file), "camera", spec, film)?;
+        files.push(file);
+    }
+    Ok(files)
 }

@@ -1,10 +1,13 @@
-//! The progress bar, and Ctrl-C.
+//! The progress bar, Ctrl-C, and the clock of studies.
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use cpu_time::ProcessTime;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::error::{Diagnostic, Kind, Result};
 
 use super::{exit, say};
 
@@ -63,4 +66,15 @@ impl Progress {
     pub(super) fn finish(&self) {
         self.0.finish_and_clear();
     }
+}
+
+/// Processor time of the process, over all its threads.
+///
+/// # Errors
+/// [`Kind::Io`] on a system that does not tell it.
+pub(super) fn processor_time() -> Result<Duration> {
+    ProcessTime::try_now().map(|time| time.as_duration()).map_err(|e| {
+        let required = "a system that tells it, for cost at equal time";
+        Diagnostic::new(Kind::Io, format!("no processor time: {e}"), required)
+    })
 }

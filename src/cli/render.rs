@@ -4,19 +4,23 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::write_atomically;
+use crate::files::atomic::write_bytes;
 use crate::files::scene_toml::{self, RunDefaults};
 use crate::picture::{AnyPicture, Watch, trace_picture};
+use crate::plot;
 use crate::report::camera::CameraReport;
+use crate::report::json::{Report, json};
+use crate::report::numbers::grouped;
+use crate::report::ply::write_ply;
 use crate::report::saved::SavedReport;
 use crate::report::statistics::ReceiverStatistics;
-use crate::report::{Report, maps, text};
-use crate::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace};
+use crate::report::{maps, text};
+use crate::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use crate::scene::Scene;
-use crate::sequence::Sequence;
+use crate::scene::receiver::Receiver;
 
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::{RenderArgs, count, exit, fail, not_available, picture, print, say, warn};
+use super::{Done, RenderArgs, algorithm, count, exit, picture, print, say, warn};
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
 pub(super) const MAX_THREADS: u32 = 1024;
@@ -32,55 +36,31 @@ pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaul
 }
 
 /// Runs the subcommand; the exit code.
-pub fn run(args: &RenderArgs) -> u8 {
-    let later =
-        [("--error", args.error.is_some()), ("--time", args.time.is_some()), ("--resume", args.resume)];
-    if let Some((flag, _)) = later.iter().find(|(_, asked)| *asked) {
-        return not_available(flag);
-    }
+pub(super) fn run(args: &RenderArgs) -> Done {
     let started = Instant::now();
-    match render(args, started) {
-        Ok(code) => code,
-        Err(errors) if errors.iter().any(|e| e.kind() == Kind::Interrupted) => {
-            let _wrong = fail(&errors);
-            exit::INTERRUPTED
-        }
-        Err(errors) => fail(&errors),
-    }
-}
-
-fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Diagnostic>> {
-    let one = |e: Diagnostic| vec![e];
     let (scene, run) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
-    picture::check(args, &scene).map_err(one)?;
-    let asked = count("--photons", args.photons.as_ref()).map_err(one)?.or(run.photons);
-    let plan = plan(args, &run, asked).map_err(one)?;
+    picture::check(args, &scene)?;
+    let asked = count("--photons", args.photons.as_ref())?.or(run.photons);
+    let plan = plan(args, &run, asked)?;
     if let Some(map) = &args.map {
         catch_interrupts();
         return seen_again(args, map, &scene, &plan, started);
     }
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
-    make_directory(&args.output).map_err(one)?;
+    make_directory(&args.output)?;
     say_rounding(asked, &plan);
     catch_interrupts();
-    let (outcome, picture) = traced(args, &scene, &plan).map_err(one)?;
+    let (outcome, picture) = traced(args, &scene, &plan)?;
     let unseen = picture.as_ref().map_or(0, |picture| picture.summary().pixels_unseen);
-    let directory = destination(&args.output, &outcome, unseen).map_err(one)?;
-    let statistics: Vec<_> = scene
-        .receivers
-        .iter()
-        .enumerate()
-        .map(|(i, receiver)| ReceiverStatistics::new(&outcome, receiver, i))
-        .collect();
+    let directory = destination(&args.output, &outcome, unseen)?;
+    let receivers = scene.receivers.iter().enumerate();
+    let statistics: Vec<_> = receivers.map(|(i, r)| ReceiverStatistics::new(&outcome, r, i)).collect();
     // A file that cannot be written must not cost the others: its error is told at the end.
     let (mut files, mut unwritten) = (Vec::new(), Vec::new());
     for (receiver, s) in scene.receivers.iter().zip(&statistics) {
-        let written = maps::write_receiver(&directory, &scene, &outcome, receiver, s);
-        files.push(written.unwrap_or_else(|e| {
-            unwritten.push(e);
-            Vec::new()
-        }));
+        let written = write_receiver(&directory, &scene, &outcome, receiver, s);
+        files.push(written.map_err(|e| unwritten.push(e)).unwrap_or_default());
     }
     let mut camera = None;
     if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
@@ -91,25 +71,45 @@ fn render(args: &RenderArgs, started: Instant) -> std::result::Result<u8, Vec<Di
     let total_s = started.elapsed().as_secs_f64();
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
     report.camera = camera;
-    unwritten.extend(write_report(&directory.join("report.json"), &report).err());
+    unwritten.extend(write_report(&directory, &report).err());
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
         print(&format!("written to {}\n", directory.display()));
     }
     if !unwritten.is_empty() {
-        return Err(unwritten);
+        return Err(unwritten.into());
     }
     if outcome.stopped_by == StoppedBy::Interrupt {
         say(&format!(
             "caustix: interrupted after {} of {} photons; what there is was written to {}",
-            text::grouped(outcome.photons),
-            text::grouped(plan.photons()),
+            grouped(outcome.photons),
+            grouped(plan.photons()),
             directory.display()
         ));
         return Ok(exit::INTERRUPTED);
     }
     Ok(seen_wholly(unseen, &directory))
+}
+
+/// Writes the files of one receiver; their names. Files written before one that cannot be stay.
+fn write_receiver(
+    directory: &Path,
+    scene: &Scene,
+    outcome: &Outcome,
+    receiver: &Receiver,
+    s: &ReceiverStatistics,
+) -> Result<Vec<String>> {
+    let names = ["exr", "png", "csv", "ply"].map(|ending| format!("{}.{ending}", receiver.name));
+    let [exr, png, csv, ply] = names.each_ref().map(|name| directory.join(name));
+    maps::write_exr(&exr, scene, outcome, receiver, s)?;
+    let written = [
+        true,
+        plot::maps::write_png(&png, outcome, receiver, s)?,
+        maps::write_csv(&csv, scene, receiver, s)?,
+        write_ply(&ply, scene, outcome, receiver, s)?,
+    ];
+    Ok(names.into_iter().zip(written).filter_map(|(name, written)| written.then_some(name)).collect())
 }
 
 /// The exit code of a picture of which an interrupt left so many pixels unseen.
@@ -119,7 +119,7 @@ fn seen_wholly(unseen: u64, directory: &Path) -> u8 {
     }
     say(&format!(
         "caustix: interrupted with {} pixels of the picture to go, which are black; it was written to {}",
-        text::grouped(unseen),
+        grouped(unseen),
         directory.display()
     ));
     exit::INTERRUPTED
@@ -128,18 +128,8 @@ fn seen_wholly(unseen: u64, directory: &Path) -> u8 {
 /// The command line where it speaks, else the scene's [run], else the defaults.
 fn plan(args: &RenderArgs, run: &RunDefaults, photons: Option<u64>) -> Result<Plan> {
     let mut settings = Settings { photons, ..Settings::default() };
+    settings.algorithm = algorithm(settings.algorithm, args.variant.as_ref(), args.sequence.as_ref())?;
     settings.seed = args.seed.or(run.seed).unwrap_or(settings.seed);
-    if let Some(name) = args.variant.as_deref() {
-        settings.algorithm = Algorithm::parse(name)
-            .map_err(|e| Diagnostic::new(e.kind(), format!("--{}", e.found()), e.required().to_string()))?;
-    }
-    if let Some(name) = args.sequence.as_deref() {
-        settings.algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {
-            let names: Vec<_> = Sequence::ALL.iter().map(|s| s.name()).collect();
-            let required = format!("one of: {}", names.join(", "));
-            Diagnostic::new(Kind::Unknown, format!("--sequence {name}"), required)
-        })?;
-    }
     // A scene's replicates yield to a sequence that can have only one; the command line's do not.
     let of_scene = run.replicates.filter(|_| settings.algorithm.sequence.is_randomised());
     settings.replicates = args.replicates.or(of_scene);
@@ -150,8 +140,8 @@ fn say_rounding(asked: Option<u64>, plan: &Plan) {
     if let Some(asked) = asked.filter(|n| *n != plan.photons()) {
         say(&format!(
             "caustix: {} photons instead of {}: {} replicates of equal size",
-            text::grouped(plan.photons()),
-            text::grouped(asked),
+            grouped(plan.photons()),
+            grouped(asked),
             plan.replicates()
         ));
     }
@@ -170,27 +160,19 @@ fn save_photons(args: &RenderArgs, outcome: &Outcome, picture: &AnyPicture) -> R
 }
 
 /// The camera's picture of saved photons, and nothing else.
-fn seen_again(
-    args: &RenderArgs,
-    map: &Path,
-    scene: &Scene,
-    plan: &Plan,
-    started: Instant,
-) -> std::result::Result<u8, Vec<Diagnostic>> {
-    let one = |e: Diagnostic| vec![e];
-    let pool = thread_pool(args.threads).map_err(one)?;
+fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started: Instant) -> Done {
+    let pool = thread_pool(args.threads)?;
     // A map that is refused leaves no directory behind.
-    let saved = picture::read(map, scene, plan).map_err(one)?;
-    make_directory(&args.output).map_err(one)?;
+    let saved = picture::read(map, scene, plan)?;
+    make_directory(&args.output)?;
     let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
-    let picture = pool.install(|| picture::of_saved(saved, scene, plan, watch)).map_err(one)?;
+    let picture = pool.install(|| picture::of_saved(saved, scene, plan, watch))?;
     let Some(spec) = &scene.camera else { return Ok(exit::DONE) };
     let unseen = picture.summary().pixels_unseen;
-    let directory = beside_earlier(&args.output, unseen > 0, |_| true).map_err(one)?;
-    let camera = picture::write(&directory, scene, plan, spec, &picture).map_err(one)?;
-    let total_s = started.elapsed().as_secs_f64();
-    let report = SavedReport::new(scene, plan, map, camera, total_s);
-    write_report(&directory.join("report.json"), &report).map_err(one)?;
+    let directory = beside_earlier(&args.output, unseen > 0, |_| true)?;
+    let camera = picture::write(&directory, scene, plan, spec, &picture)?;
+    let report = SavedReport::new(scene, plan, map, camera, started.elapsed().as_secs_f64());
+    write_report(&directory, &report)?;
     if !args.quiet {
         print(&format!("scene      {}\n", scene.identity.name));
         print(&format!(
@@ -273,14 +255,8 @@ fn beside_earlier(output: &Path, interrupted: bool, more: impl Fn(u64) -> bool) 
     Ok(output.to_path_buf())
 }
 
-fn write_report(path: &Path, report: &impl serde::Serialize) -> Result<()> {
-    let text = serde_json::to_string_pretty(report).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing the report"), "a report in JSON")
-            .in_file(path)
-    })?;
-    write_atomically(path, |out| {
-        use std::io::Write;
-        out.write_all(text.as_bytes())?;
-        out.write_all(b"\n")
-    })
+fn write_report(directory: &Path, report: &impl serde::Serialize) -> Result<()> {
+    let path = directory.join("report.json");
+    let text = json(report).map_err(|e| e.in_file(&path))?;
+    write_bytes(&path, text.as_bytes())
 }

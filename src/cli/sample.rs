@@ -1,44 +1,35 @@
 //! `caustix sample`: directions of a photometric file, and the certificate that they have its density.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
 use glam::{DMat3, DVec3};
-use serde::Serialize;
 
 use crate::emitter::AimFrame;
 use crate::emitter::photometric::grid_axes;
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::files::atomic::write_atomically;
 use crate::files::lm63;
 use crate::files::scene_toml::count::parse_count;
 use crate::lab::certificate::density::file_angles_deg;
 use crate::lab::certificate::sampler::{Effort, Sampled, made_from, sample};
-use crate::lab::certificate::{Certificate, Density, Judge, PointKind, REPLICATES, TestName};
+use crate::lab::certificate::{Certificate, Density, Judge, PointKind, REPLICATES};
 use crate::photometry::PhotometricType;
-use crate::report::text::grouped;
-use crate::run::{Algorithm, Variant};
+use crate::report::certificate::CertificateReport;
+use crate::report::json::json;
+use crate::run::Variant;
 use crate::sample::grid::Grid;
-use crate::sequence::Sequence;
 
-use super::{SampleArgs, exit, fail, print, say, warn};
+use super::{Done, SampleArgs, algorithm, exit, in_option, print, say, warn};
 
 /// Fewest points of a randomisation for the test of cell means.
 const LEAST_REPLICATE: u64 = 64;
 
 /// Runs the subcommand; the exit code.
-pub fn run(args: &SampleArgs) -> u8 {
-    match certify(args) {
-        Ok(report) => {
-            match if args.json { json(&report) } else { Ok(text(&report)) } {
-                Ok(text) => print(&text),
-                Err(error) => return fail(&[error]),
-            }
-            verdict(&report.certificate)
-        }
-        Err(error) => fail(&[error]),
-    }
+pub(super) fn run(args: &SampleArgs) -> Done {
+    let report = certify(args)?;
+    print(&if args.json { json(&report)? } else { report.text() });
+    Ok(verdict(&report.certificate))
 }
 
 /// The exit code of a certificate; what failed is said.
@@ -49,28 +40,10 @@ fn verdict(certificate: &Certificate) -> u8 {
     if certificate.passed { exit::DONE } else { exit::WRONG }
 }
 
-/// Everything that `--json` says. Names are a contract: they are only added to.
-#[derive(Debug, Serialize)]
-struct Report {
-    file: String,
-    photometric_type: &'static str,
-    variant: String,
-    sequence: &'static str,
-    seed: u64,
-    #[serde(flatten)]
-    certificate: Certificate,
-    /// Points of the sequence for each sample: more than one where rejection goes on with the next point.
-    points_per_sample: f64,
-    ns_per_sample: f64,
-    warnings: Vec<String>,
-    #[serde(skip)]
-    description: String,
-}
-
-fn certify(args: &SampleArgs) -> Result<Report> {
-    let number = parse_count(&args.samples)
-        .map_err(|e| Diagnostic::new(Kind::Range, format!("-n {}", e.found()), e.required().to_string()))?;
-    let algorithm = algorithm(args)?;
+fn certify(args: &SampleArgs) -> Result<CertificateReport> {
+    let number = parse_count(&args.samples).map_err(|e| in_option("-n ", &e))?;
+    let algorithm =
+        algorithm(Variant::QmcInverseReuse.into(), args.variant.as_ref(), args.sequence.as_ref())?;
     let photometry = lm63::read(&args.file)?;
     if !args.json {
         warn(&photometry.warnings);
@@ -105,7 +78,7 @@ fn certify(args: &SampleArgs) -> Result<Report> {
             effort = effort.with(more);
         }
     }
-    Ok(Report {
+    Ok(CertificateReport {
         file: photometry.file.clone(),
         photometric_type: kind.name(),
         variant: algorithm.name(),
@@ -142,21 +115,6 @@ fn write_directions(
     written.map(|()| effort)
 }
 
-fn algorithm(args: &SampleArgs) -> Result<Algorithm> {
-    let mut algorithm = match args.variant.as_deref() {
-        Some(name) => Algorithm::parse(name)?,
-        None => Algorithm::from(Variant::QmcInverseReuse),
-    };
-    if let Some(name) = args.sequence.as_deref() {
-        algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {
-            let names: Vec<_> = Sequence::ALL.iter().map(|s| s.name()).collect();
-            let required = format!("one of: {}", names.join(", "));
-            Diagnostic::new(Kind::Unknown, format!("--sequence {name}"), required)
-        })?;
-    }
-    Ok(algorithm)
-}
-
 /// The directions as CSV: `index` from 0; `vertical_deg`, `horizontal_deg` in the file's own photometric convention,
 /// symmetry unfolded; the unit vector `x,y,z` along (r, u, -a) of docs/PHOTOMETRIC_FRAME.md, which is the world of a lamp
 /// that hangs (aim -z, up +y); the coordinates that the sample took.
@@ -187,97 +145,6 @@ impl<'w, W: Write> Table<'w, W> {
     }
 }
 
-fn json(report: &Report) -> Result<String> {
-    let text = serde_json::to_string_pretty(report).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing JSON"), "numbers that JSON can hold")
-    })?;
-    Ok(text + "\n")
-}
-
-/// The certificate for a terminal.
-fn text(report: &Report) -> String {
-    let Report { certificate, .. } = report;
-    let mut out = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(out, "{name:<18}{value}");
-    };
-    line("file", format!("{}, type {}", report.file, report.photometric_type));
-    line("variant", format!("{}: {}", report.variant, report.description));
-    let mut samples = format!("{}, seed {}", grouped(certificate.draws), report.seed);
-    if certificate.replicates > 0 {
-        let each = grouped(certificate.replicate_draws / u64::from(certificate.replicates));
-        let _ = write!(samples, "; for the cell means {} x {each} more", certificate.replicates);
-    }
-    line("samples", samples);
-    let cells = certificate.cells;
-    let dark = match certificate.draws_in_zero_cells {
-        0 => "dark and empty".into(),
-        n => format!("dark, {} samples in them", grouped(n)),
-    };
-    line("table", format!("{} cells, {} {dark}; {} pools", cells.table, cells.zero, cells.pooled));
-    let used = certificate.coordinates;
-    line("coordinates", format!("{:.4} a sample, at most {}", used.mean, used.max));
-    let points = match report.points_per_sample {
-        1.0 => String::new(),
-        more => format!(", {more:.3} points of the sequence"),
-    };
-    line("time", format!("{:.0} ns a sample{points}", report.ns_per_sample));
-    let d = certificate.discrepancy;
-    line(
-        "discrepancy",
-        format!(
-            "{:.3} of that of random points: L2-star {:.2e}, random {:.2e}",
-            d.ratio, d.l2_star, d.random
-        ),
-    );
-    out.push('\n');
-    let _ = writeln!(out, "{:<18}{:>12} {:>8} {:>9} {:>9}", "test", "statistic", "degrees", "p", "corrected");
-    for test in &certificate.tests {
-        let degrees = test.degrees.map(|d| d.to_string()).unwrap_or_default();
-        let statistic = statistic(test.name, test.statistic);
-        let verdict = if test.passed { "passed" } else { "FAILED" };
-        let (p, corrected) = (chance(test.p_value), chance(test.p_corrected));
-        let what = test.what;
-        let _ = writeln!(
-            out,
-            "{:<18}{statistic:>12} {degrees:>8} {p:>9} {corrected:>9}  {verdict}  {what}",
-            test.name
-        );
-    }
-    out.push('\n');
-    out.push_str(match certificate.points {
-        PointKind::Random => "Expected is the file's own candela, integrated by quadrature. The p-values hold.\n",
-        PointKind::LowDiscrepancy => {
-            "Expected is the file's own candela, integrated by quadrature. The points are no random points: p-values of\n\
-             counts, KS and discrepancy are what random points would do, an upper bound; those of cell means hold.\n"
-        }
-    });
-    let verdict = if certificate.passed { "passed" } else { "FAILED" };
-    let _ = writeln!(out, "certificate       {verdict}");
-    out
-}
-
-fn statistic(name: TestName, value: f64) -> String {
-    match name {
-        TestName::LargestCell => format!("{value:+.3} %"),
-        TestName::ChiSquare => format!("{value:.1}"),
-        TestName::CellMeans => format!("{value:+.2}"),
-        _ => format!("{value:.6}"),
-    }
-}
-
-/// A chance as a short number.
-fn chance(p: f64) -> String {
-    if p >= 1e-4 {
-        format!("{p:.4}")
-    } else if p < 1e-15 {
-        "< 1e-15".into()
-    } else {
-        format!("{p:.1e}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -300,7 +167,7 @@ mod tests {
         assert_eq!(verdict(&failed), exit::WRONG);
         let told = failed.failures().join("\n");
         assert!(told.contains("chi-square (counts of the table's cells): corrected p below 1e-15"), "{told}");
-        let report = Report {
+        let report = CertificateReport {
             file: file.to_owned(),
             photometric_type: "C",
             variant: "mc".to_owned(),
@@ -312,8 +179,8 @@ mod tests {
             warnings: Vec::new(),
             description: String::new(),
         };
-        assert!(text(&report).contains("FAILED  counts of the table's cells"));
-        assert!(text(&report).ends_with("certificate       FAILED\n"));
+        assert!(report.text().contains("FAILED  counts of the table's cells"));
+        assert!(report.text().ends_with("certificate       FAILED\n"));
         assert!(json(&report).unwrap().contains("\"passed\": false"));
     }
 }

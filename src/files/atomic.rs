@@ -28,6 +28,28 @@ pub fn write_atomically(
     })
 }
 
+/// The same for a file whose bytes are there.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
+    write_atomically(path, |out| out.write_all(bytes))
+}
+
+/// Writes several texts into a directory that is there: paths of those written, and what went wrong with the others. One that
+/// cannot be written keeps no other from being.
+pub fn write_each(directory: &Path, files: &[(&str, String)]) -> (Vec<PathBuf>, Vec<Diagnostic>) {
+    let (mut written, mut errors) = (Vec::new(), Vec::new());
+    for (name, content) in files {
+        let path = directory.join(name);
+        match write_bytes(&path, content.as_bytes()) {
+            Ok(()) => written.push(path),
+            Err(e) => errors.push(e),
+        }
+    }
+    (written, errors)
+}
+
 fn write_and_rename(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,

@@ -12,5 +12,6 @@ pub mod obj;
 mod obj_text;
 pub mod parts;
 pub mod photon_map;
+#[cfg(feature = "plots")]
 pub mod png;
 pub mod scene_toml;

@@ -1,6 +1,6 @@
 //! How a picture was made and what it cost.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::picture::camera::Film;
 use crate::scene::camera::Method;
@@ -16,7 +16,7 @@ pub struct Chosen {
 }
 
 /// How good a picture is: medians over the pixels that are not black.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Cost {
     /// Estimated bias over the pixel, percent.
     pub median_bias_percent: Option<f64>,
@@ -24,32 +24,44 @@ pub struct Cost {
     pub median_standard_error_percent: Option<f64>,
 }
 
-/// How a picture was made, and how good it is.
-#[derive(Debug, Clone, PartialEq)]
+/// How a picture was made, and how good it is. Names are those of report.json: they are only added to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PictureSummary {
     /// How light got from photons into pixels.
+    #[serde(serialize_with = "word")]
     pub method: Method,
+    /// Of light that no surface scattered before it arrived, and of all other.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "by_density")]
+    pub bandwidth: Option<[Chosen; 2]>,
+    /// How good it is.
+    #[serde(flatten)]
+    pub cost: Cost,
     /// Photons that it stands for.
     pub photons: u64,
     /// Replicates they belong to.
+    #[serde(skip)]
     pub replicates: u32,
     /// Photons that were kept on surfaces, all passes together; for a splat the arrivals that reached a
     /// pixel.
     pub photons_kept: u64,
     /// Passes that memory made necessary.
     pub passes: u32,
-    /// Of light that no surface scattered before, and of all other.
-    pub bandwidth: Option<[Chosen; 2]>,
     /// Eye paths that were ended because they did not end by themselves.
     pub eye_paths_killed: u64,
     /// Splats of a photon that were cut to the largest that is added: the pinhole all but touches a surface.
     pub splats_cut: u64,
     /// Pixels that an interrupt left unseen: black, with an unknown error.
     pub pixels_unseen: u64,
-    /// How good it is.
-    pub cost: Cost,
-    /// Time of the maps and the camera, s.
+    /// Time of the maps and the camera, s. (What a splat takes is part of the tracing.)
     pub time_s: f64,
+}
+
+fn word<S: Serializer>(method: &Method, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(method.word())
+}
+
+fn by_density<S: Serializer>(bandwidth: &Option<[Chosen; 2]>, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(["caustic", "diffuse"].into_iter().zip(bandwidth.iter().flatten()))
 }
 
 impl Cost {

@@ -4,53 +4,17 @@
 //! linear light; coverage is the area of the pixel under the stroke, so thin lines keep their weight at any angle.
 
 use std::path::Path;
-use std::sync::OnceLock;
 
 use crate::error::Result;
 use crate::files::png::write_rgb8;
-use crate::plot::font;
+use crate::report::colour::Colour;
+
+use super::chain::{contains, distance, distance_to_segment};
+use super::coverage::{Footprint, covered};
+use super::font;
 
 /// Longest run of a stroke that is rasterised at once: keeps the boxes of oblique lines small.
 const RUN_PX: f64 = 24.0;
-
-/// A colour in linear light, sRGB primaries, nominally 0 to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Colour(pub [f32; 3]);
-
-impl Colour {
-    /// White.
-    pub const WHITE: Self = Self([1.0; 3]);
-    /// Black.
-    pub const BLACK: Self = Self([0.0; 3]);
-
-    /// The colour of an 8-bit sRGB triple.
-    pub fn srgb(red: u8, green: u8, blue: u8) -> Self {
-        Self([red, green, blue].map(|c| srgb_to_linear(f64::from(c) / 255.0) as f32))
-    }
-
-    /// A grey of this 8-bit sRGB value.
-    pub fn grey(value: u8) -> Self {
-        Self::srgb(value, value, value)
-    }
-
-    /// The nearest 8-bit sRGB triple.
-    pub fn to_srgb(self) -> [u8; 3] {
-        self.0.map(encode)
-    }
-}
-
-/// sRGB transfer function, IEC 61966-2-1: encoded value to linear light.
-fn srgb_to_linear(value: f64) -> f64 {
-    if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
-}
-
-/// 8-bit code of a linear value: the number of code boundaries at or below it.
-fn encode(linear: f32) -> u8 {
-    static BOUNDARIES: OnceLock<[f32; 255]> = OnceLock::new();
-    let boundaries =
-        BOUNDARIES.get_or_init(|| std::array::from_fn(|i| srgb_to_linear((i as f64 + 0.5) / 255.0) as f32));
-    boundaries.partition_point(|&boundary| boundary <= linear) as u8
-}
 
 /// Where the given point lies in a line of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +25,17 @@ pub enum Anchor {
     Middle,
     /// At its right end.
     End,
+}
+
+impl Anchor {
+    /// Part of the text to the left of the given point.
+    fn share(self) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => 0.5,
+            Self::End => 1.0,
+        }
+    }
 }
 
 /// How text is drawn.
@@ -128,16 +103,6 @@ impl Canvas {
         self.width
     }
 
-    /// Height in pixels.
-    pub fn height(&self) -> usize {
-        self.height
-    }
-
-    /// The colour of a pixel; black outside.
-    pub fn pixel(&self, x: usize, y: usize) -> Colour {
-        if x < self.width && y < self.height { self.pixels[y * self.width + x] } else { Colour::BLACK }
-    }
-
     /// Sets a pixel, if it is inside.
     pub fn set_pixel(&mut self, x: usize, y: usize, colour: Colour) {
         if x < self.width && y < self.height {
@@ -197,22 +162,10 @@ impl Canvas {
         self.ink(colour, opacity);
     }
 
-    /// An arc of a circle; angles in radians, from +x towards +y, that is clockwise on the screen.
-    pub fn arc(
-        &mut self,
-        centre: [f64; 2],
-        radius: f64,
-        [from, to]: [f64; 2],
-        width_px: f64,
-        colour: Colour,
-    ) {
-        self.polyline(&arc_points(centre, radius, [from, to]), width_px, colour, 1.0);
-    }
-
     /// Upright text with its baseline at `y`, sharp on the pixel grid.
     pub fn text(&mut self, [x, y]: [f64; 2], text: &str, style: &TextStyle) {
         let width = font::width_px(text, style.size_px, true);
-        let start = (x - width * anchor_share(style.anchor)).round() + 0.5;
+        let start = (x - width * style.anchor.share()).round() + 0.5;
         let baseline = (y - 0.5).round() + 0.5;
         for stroke in font::strokes(text, style.size_px, true) {
             let points: Vec<_> = stroke.points.iter().map(|p| [start + p[0], baseline + p[1]]).collect();
@@ -235,7 +188,7 @@ impl Canvas {
 
     fn rotated_strokes(&mut self, at: [f64; 2], angle: f64, text: &str, style: &TextStyle, extra_px: f64) {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let shift = font::width_px(text, style.size_px, false) * anchor_share(style.anchor);
+        let shift = font::width_px(text, style.size_px, false) * style.anchor.share();
         for stroke in font::strokes(text, style.size_px, false) {
             let place = |p: &[f64; 2]| {
                 let [x, y] = [p[0] - shift, p[1]];
@@ -325,139 +278,18 @@ impl Canvas {
     }
 }
 
-/// Whether a ray from the point to the right crosses the polygon's outline an odd number of times.
-fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    let crossed = edges
-        .filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
-    crossed.count() % 2 == 1
-}
-
-/// The chain of points of an arc, fine enough for a pixel grid; angles as in [`Canvas::arc`].
-pub fn arc_points(centre: [f64; 2], radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
-    let steps = ((to - from).abs() * radius.abs().max(1.0).sqrt() * 2.0).ceil().clamp(4.0, 2000.0);
-    let point = |i: usize| {
-        let angle = from + (to - from) * i as f64 / steps;
-        [centre[0] + radius * libm::cos(angle), centre[1] + radius * libm::sin(angle)]
-    };
-    (0..=steps as usize).map(point).collect()
-}
-
-/// The inked pieces of a dashed line of `on` pixels ink and `off` pixels gap, measured along the chain.
-pub fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
-    let (mut inked, mut left) = (true, on);
-    let mut piece: Vec<[f64; 2]> = points.first().copied().into_iter().collect();
-    for pair in points.windows(2) {
-        let (mut from, to) = (pair[0], pair[1]);
-        let mut length = distance(from, to);
-        while length > left && left > 0.0 {
-            let share = left / length;
-            from = [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share];
-            piece.push(from);
-            if inked {
-                pieces.push(std::mem::take(&mut piece));
-            }
-            length -= left;
-            inked = !inked;
-            left = if inked { on } else { off };
-            piece = vec![from];
-        }
-        left -= length;
-        piece.push(to);
-    }
-    if inked && piece.len() > 1 {
-        pieces.push(piece);
-    }
-    pieces
-}
-
-/// A pixel square seen along a line: a trapezium, the convolution of the two sides' projections. Its integral gives the
-/// exact share of the pixel that a long straight stroke covers.
-struct Footprint {
-    /// Longer and shorter projection of a side on the line's normal.
-    long: f64,
-    short: f64,
-}
-
-impl Footprint {
-    fn across(from: [f64; 2], to: [f64; 2]) -> Self {
-        let length = distance(from, to);
-        if length == 0.0 {
-            return Self { long: 1.0, short: 0.0 };
-        }
-        let (a, b) = (((to[0] - from[0]) / length).abs(), ((to[1] - from[1]) / length).abs());
-        Self { long: a.max(b), short: a.min(b) }
-    }
-
-    fn half_width(&self) -> f64 {
-        0.5 * (self.long + self.short)
-    }
-
-    /// Share of the pixel on the near side of a line at this signed distance from its centre.
-    fn below(&self, distance: f64) -> f64 {
-        let t = distance.abs();
-        let share = if t <= 0.5 * (self.long - self.short) {
-            t / self.long
-        } else if t < self.half_width() {
-            let rest = self.half_width() - t;
-            0.5 - rest * rest / (2.0 * self.long * self.short)
-        } else {
-            0.5
-        };
-        if distance < 0.0 { 0.5 - share } else { 0.5 + share }
-    }
-}
-
-fn anchor_share(anchor: Anchor) -> f64 {
-    match anchor {
-        Anchor::Start => 0.0,
-        Anchor::Middle => 0.5,
-        Anchor::End => 1.0,
-    }
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    (dx * dx + dy * dy).sqrt()
-}
-
-fn distance_to_segment(p: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
-    let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-    let square = dx * dx + dy * dy;
-    let along = if square > 0.0 {
-        (((p[0] - from[0]) * dx + (p[1] - from[1]) * dy) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    distance(p, [from[0] + along * dx, from[1] + along * dy])
-}
-
-/// Pixels of [low, high) that the interval from `a` to `b` touches, each with the share it covers.
-fn covered(a: f64, b: f64, low: usize, high: usize) -> Vec<(usize, f64)> {
-    let first = (a.floor() as usize).max(low);
-    let last = (b.ceil().max(0.0) as usize).min(high);
-    (first..last).map(|i| (i, (b.min(i as f64 + 1.0) - a.max(i as f64)).clamp(0.0, 1.0))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::chain::arc_points;
+
+    fn pixel(canvas: &Canvas, x: usize, y: usize) -> Colour {
+        canvas.pixels[y * canvas.width + x]
+    }
 
     /// Ink on a white picture drawn black, in pixel areas.
     fn ink(canvas: &Canvas) -> f64 {
         canvas.pixels.iter().map(|p| 1.0 - f64::from(p.0[0])).sum()
-    }
-
-    #[test]
-    fn codes_round_trip_and_are_nearest() {
-        for code in 0..=255 {
-            assert_eq!(Colour::grey(code).to_srgb(), [code; 3]);
-        }
-        // IEC 61966-2-1: linear 0.5 is 187.516 of 255, linear 0.0031308 is 10.31.
-        assert_eq!(encode(0.5), 188);
-        assert_eq!(encode(0.003_130_8), 10);
-        assert_eq!((encode(-1.0), encode(2.0), encode(f32::NAN)), (0, 255, 0));
     }
 
     #[test]
@@ -491,23 +323,22 @@ mod tests {
         for y in 0..40 {
             for x in 0..40 {
                 let inside = (10..20).contains(&x) && (10..20).contains(&y);
-                assert!(inside || canvas.pixel(x, y) == Colour::WHITE, "{x} {y}");
+                assert!(inside || pixel(&canvas, x, y) == Colour::WHITE, "{x} {y}");
             }
         }
-        assert_eq!(canvas.pixel(15, 15), Colour::BLACK);
-        assert_eq!(canvas.pixel(99, 0), Colour::BLACK);
+        assert_eq!(pixel(&canvas, 15, 15), Colour::BLACK);
     }
 
     #[test]
     fn text_of_eleven_pixels_has_sharp_stems_and_keeps_its_anchor() {
         let mut canvas = Canvas::new(60, 30, Colour::WHITE);
         canvas.text([4.0, 20.0], "l", &TextStyle::new(12.0, Colour::BLACK));
-        let darkest = (0..60).map(|x| canvas.pixel(x, 15).0[0]).fold(1.0, f32::min);
+        let darkest = (0..60).map(|x| pixel(&canvas, x, 15).0[0]).fold(1.0, f32::min);
         assert!(darkest < 0.05, "a stem is one dark pixel wide: {darkest}");
         for (anchor, first, last) in [(Anchor::Start, 30, 45), (Anchor::End, 15, 30)] {
             let mut canvas = Canvas::new(60, 30, Colour::WHITE);
             canvas.text([30.0, 20.0], "100", &TextStyle::new(11.0, Colour::BLACK).anchored(anchor));
-            let inked = |x: &usize| (0..30).any(|y| canvas.pixel(*x, y).0[0] < 0.6);
+            let inked = |x: &usize| (0..30).any(|y| pixel(&canvas, *x, y).0[0] < 0.6);
             let columns: Vec<usize> = (0..60).filter(inked).collect();
             let (low, high) = (columns[0], columns[columns.len() - 1]);
             assert!(low + 1 >= first && high <= last + 1, "{anchor:?}: {low}..{high}");
@@ -528,16 +359,5 @@ mod tests {
             canvas.polygon(&corners, Colour::BLACK);
             assert!((ink(&canvas) - area).abs() <= 0.01 * area, "{} for {area}", ink(&canvas));
         }
-    }
-
-    #[test]
-    fn dashes_share_the_length() {
-        let points = [[0.0, 0.0], [30.0, 0.0], [30.0, 40.0]];
-        let pieces = dashes(&points, [5.0, 3.0]);
-        let total: f64 =
-            pieces.iter().flat_map(|p| p.windows(2).map(|w| distance(w[0], w[1])).collect::<Vec<_>>()).sum();
-        // 70 = 8 periods of 8 and 6 more, of which 5 are ink.
-        assert!((total - 45.0).abs() < 1e-9, "{total}");
-        assert_eq!(pieces.len(), 9);
     }
 }

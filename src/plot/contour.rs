@@ -3,27 +3,12 @@
 //! W. E. Lorensen, H. E. Cline, "Marching cubes", SIGGRAPH 1987, in the plane; a saddle is decided by the mean of its
 //! four corners. Sample (i, j) lies at (i + 0.5, j + 0.5), so lines are in cells of the map.
 
-/// A level line.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LevelLine {
-    /// Its points in cells, x right and y down; of a closed line the first point is repeated at the end.
-    pub points: Vec<[f64; 2]>,
-    /// Whether it closes on itself; otherwise it ends at the border or at a hole.
-    pub closed: bool,
-}
-
-impl LevelLine {
-    /// Its length in cells.
-    pub fn length(&self) -> f64 {
-        self.points.windows(2).map(|p| distance(p[0], p[1])).sum()
-    }
-}
-
 const NONE: u32 = u32::MAX;
 
-/// The lines on which the bilinear map has this level; values at or above it are inside. Squares with a corner that is
-/// NaN are left out. None for maps narrower than two samples.
-pub fn level_lines(values: &[f64], width: usize, height: usize, level: f64) -> Vec<LevelLine> {
+/// The lines on which the bilinear map has this level, as points in cells, x right and y down; values at or above it are
+/// inside. A closed line repeats its first point at the end; others end at the border or at a hole: squares with a corner that
+/// is NaN are left out. None for maps narrower than two samples.
+pub fn level_lines(values: &[f64], width: usize, height: usize, level: f64) -> Vec<Vec<[f64; 2]>> {
     if width < 2 || height < 2 || values.len() != width.saturating_mul(height) || values.len() >= 1 << 30 {
         return Vec::new();
     }
@@ -44,7 +29,7 @@ pub fn level_lines(values: &[f64], width: usize, height: usize, level: f64) -> V
         for &edge in &crossed {
             let [first, second] = links[edge];
             if first != NONE && (second == NONE) == open {
-                lines.push(follow(&grid, &mut links, edge, !open));
+                lines.push(follow(&grid, &mut links, edge));
             }
         }
     }
@@ -62,7 +47,7 @@ fn join(links: &mut [[u32; 2]], crossed: &mut Vec<usize>, from: usize, to: usize
 }
 
 /// Walks from edge to edge, removing the links it has used.
-fn follow(grid: &Grid, links: &mut [[u32; 2]], start: usize, closed: bool) -> LevelLine {
+fn follow(grid: &Grid, links: &mut [[u32; 2]], start: usize) -> Vec<[f64; 2]> {
     let mut points = vec![grid.crossing(start)];
     let mut edge = start;
     while links[edge][0] != NONE {
@@ -73,7 +58,7 @@ fn follow(grid: &Grid, links: &mut [[u32; 2]], start: usize, closed: bool) -> Le
         points.push(grid.crossing(next));
         edge = next;
     }
-    LevelLine { points, closed }
+    points
 }
 
 struct Grid<'a> {
@@ -127,14 +112,14 @@ impl Grid<'_> {
     }
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    (dx * dx + dy * dy).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::chain::{distance, length};
+
+    fn is_closed(line: &[[f64; 2]]) -> bool {
+        line.first() == line.last()
+    }
 
     fn map(width: usize, height: usize, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         (0..width * height).map(|i| f((i % width) as f64 + 0.5, (i / width) as f64 + 0.5)).collect()
@@ -147,14 +132,14 @@ mod tests {
         for radius in [5.0, 17.0, 40.25] {
             let lines = level_lines(&cone, 100, 96, 100.0 - radius);
             assert_eq!(lines.len(), 1, "radius {radius}");
-            assert!(lines[0].closed && lines[0].points.first() == lines[0].points.last());
-            for &p in &lines[0].points {
+            assert!(is_closed(&lines[0]));
+            for &p in &lines[0] {
                 // Linear interpolation along an edge of length 1: curvature 1/r leaves at most 1/(8 r).
                 let error = (distance(p, [cx, cy]) - radius).abs();
                 assert!(error <= 1.0 / (8.0 * radius) * 1.1, "{p:?} is off by {error}");
             }
             let circumference = std::f64::consts::TAU * radius;
-            assert!((lines[0].length() / circumference - 1.0).abs() < 0.01);
+            assert!((length(&lines[0]) / circumference - 1.0).abs() < 0.01);
         }
     }
 
@@ -163,8 +148,8 @@ mod tests {
         let plane = map(30, 20, |x, y| 2.0 * x + 3.0 * y);
         let lines = level_lines(&plane, 30, 20, 60.0);
         assert_eq!(lines.len(), 1);
-        assert!(!lines[0].closed);
-        for p in &lines[0].points {
+        assert!(!is_closed(&lines[0]));
+        for p in &lines[0] {
             assert!((2.0 * p[0] + 3.0 * p[1] - 60.0).abs() < 1e-9, "{p:?}");
         }
         assert!(level_lines(&plane, 30, 20, 1000.0).is_empty());
@@ -177,10 +162,9 @@ mod tests {
         let segments: usize =
             (0..39 * 39).map(|i| grid.segments(i % 39, i / 39).iter().flatten().count()).sum();
         let lines = level_lines(&noise, 40, 40, 0.5);
-        assert_eq!(lines.iter().map(|l| l.points.len() - 1).sum::<usize>(), segments);
+        assert_eq!(lines.iter().map(|l| l.len() - 1).sum::<usize>(), segments);
         for line in &lines {
-            assert_eq!(line.closed, line.points.first() == line.points.last());
-            for pair in line.points.windows(2) {
+            for pair in line.windows(2) {
                 assert!(distance(pair[0], pair[1]) <= 2f64.sqrt() + 1e-12);
             }
         }
@@ -192,10 +176,9 @@ mod tests {
         let ridge = level_lines(&[1.0, 0.0, 0.0, 1.0], 2, 2, 0.4);
         let mut pits = level_lines(&[1.0, 0.0, 0.0, 1.0], 2, 2, 0.6);
         assert_eq!((ridge.len(), pits.len()), (2, 2));
-        let near =
-            |line: &LevelLine, corner: [f64; 2]| line.points.iter().all(|&p| distance(p, corner) < 0.7);
+        let near = |line: &[[f64; 2]], corner: [f64; 2]| line.iter().all(|&p| distance(p, corner) < 0.7);
         assert!(ridge.iter().any(|l| near(l, [1.5, 0.5])) && ridge.iter().any(|l| near(l, [0.5, 1.5])));
-        pits.sort_by(|a, b| a.points[0][0].total_cmp(&b.points[0][0]));
+        pits.sort_by(|a, b| a[0][0].total_cmp(&b[0][0]));
         assert!(near(&pits[0], [0.5, 0.5]) && near(&pits[1], [1.5, 1.5]));
     }
 
@@ -205,7 +188,7 @@ mod tests {
         cone[10 * 21 + 16] = f64::NAN;
         let lines = level_lines(&cone, 21, 21, -6.0);
         assert_eq!(lines.len(), 1);
-        assert!(!lines[0].closed);
+        assert!(!is_closed(&lines[0]));
         assert!(level_lines(&[1.0, 2.0], 1, 2, 1.5).is_empty());
         assert!(level_lines(&[], 0, 0, 1.0).is_empty());
         assert!(level_lines(&[f64::NAN; 9], 3, 3, 1.0).is_empty());

@@ -1,11 +1,14 @@
 //! A drawing as a list of shapes, rendered alike to SVG and to pixels.
 
-use std::fmt::Write as _;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use crate::error::Result;
-use crate::files::atomic::write_atomically;
-use crate::plot::canvas::{Anchor, Canvas, Colour, TextStyle, arc_points, dashes};
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::atomic::write_bytes;
+use crate::report::colour::Colour;
+
+use super::canvas::{Anchor, Canvas, TextStyle};
+use super::chain::{arc_points, dashes};
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +19,28 @@ pub struct Pen {
     pub colour: Colour,
     /// Ink and gap in pixels; none for a solid line.
     pub dash_px: Option<[f64; 2]>,
+}
+
+impl Pen {
+    /// A solid line.
+    pub fn solid(width_px: f64, colour: Colour) -> Self {
+        Self { width_px, colour, dash_px: None }
+    }
+}
+
+/// The colour of text and marks.
+pub fn ink() -> Colour {
+    Colour::grey(50)
+}
+
+/// Upright text whose anchor, on the baseline, is here.
+pub fn text(at: [f64; 2], text: &str, style: TextStyle) -> Shape {
+    Shape::Text { at, text: text.to_owned(), style }
+}
+
+/// A chain of lines.
+pub fn polyline(points: impl Into<Vec<[f64; 2]>>, pen: Pen) -> Shape {
+    Shape::Polyline { points: points.into(), pen }
 }
 
 /// One shape; coordinates in pixels, x right and y down.
@@ -102,18 +127,25 @@ impl Drawing {
              <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
         );
         for shape in &self.shapes {
-            write_shape(&mut svg, shape);
+            svg += &svg_of(shape);
+            svg.push('\n');
         }
         svg.push_str("</svg>\n");
         svg
     }
 
-    /// Writes the SVG file.
+    /// Writes the drawing; the ending of the name says as what.
     ///
     /// # Errors
-    /// [`crate::error::Kind::Io`] with the path.
-    pub fn write_svg(&self, path: impl AsRef<Path>) -> Result<()> {
-        write_atomically(path, |writer| std::io::Write::write_all(writer, self.to_svg().as_bytes()))
+    /// [`Kind::Range`] for an ending other than `.svg` and `.png`; [`Kind::Io`] with the path.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        match path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).as_deref() {
+            Some("svg") => write_bytes(path, self.to_svg().as_bytes()),
+            Some("png") => self.to_canvas().write_png(path),
+            _ => {
+                Err(Diagnostic::new(Kind::Range, path.display().to_string(), "a name ending in .svg or .png"))
+            }
+        }
     }
 }
 
@@ -128,36 +160,27 @@ fn draw_chain(canvas: &mut Canvas, points: &[[f64; 2]], pen: &Pen) {
     }
 }
 
-/// Writing to a `String` cannot fail, so its results are not looked at.
-fn write_shape(svg: &mut String, shape: &Shape) {
+fn svg_of(shape: &Shape) -> String {
     match shape {
-        Shape::Polyline { points, pen } => {
-            write!(svg, "<polyline points=\"{}\" {}/>", list(points), stroke(pen)).ok();
-        }
+        Shape::Polyline { points, pen } => format!("<polyline points=\"{}\" {}/>", list(points), stroke(pen)),
         Shape::Arc { centre: [x, y], radius, angles: [from, to], pen } => {
-            if (to - from).abs() >= std::f64::consts::TAU * (1.0 - 1e-9) {
-                let (x, y, r) = (number(*x), number(*y), number(*radius));
-                write!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>", stroke(pen)).ok();
-            } else {
-                let end = |a: f64| {
-                    format!("{} {}", number(x + radius * libm::cos(a)), number(y + radius * libm::sin(a)))
-                };
-                let large = u8::from((to - from).abs() > std::f64::consts::PI);
-                let sweep = u8::from(to > from);
-                let (r, start, stop) = (number(*radius), end(*from), end(*to));
-                write!(svg, "<path d=\"M {start} A {r} {r} 0 {large} {sweep} {stop}\" {}/>", stroke(pen))
-                    .ok();
+            let (r, stroke) = (number(*radius), stroke(pen));
+            if (to - from).abs() >= TAU * (1.0 - 1e-9) {
+                return format!("<circle cx=\"{}\" cy=\"{}\" r=\"{r}\" {stroke}/>", number(*x), number(*y));
             }
+            let end = |a: f64| {
+                format!("{} {}", number(x + radius * libm::cos(a)), number(y + radius * libm::sin(a)))
+            };
+            let (large, sweep) = (u8::from((to - from).abs() > PI), u8::from(to > from));
+            format!("<path d=\"M {} A {r} {r} 0 {large} {sweep} {}\" {stroke}/>", end(*from), end(*to))
         }
         Shape::Rect { area, colour } => {
-            let [x, y, width, height] = area.map(number);
-            let fill = hex(*colour);
-            write!(svg, "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
-                .ok();
+            let ([x, y, width, height], fill) = (area.map(number), hex(*colour));
+            format!("<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{fill}\"/>")
         }
         Shape::Polygon { corners, colour } => {
             let (points, fill) = (list(corners), hex(*colour));
-            write!(svg, "<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>").ok();
+            format!("<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>")
         }
         Shape::Text { at, text, style } => {
             let anchor = match style.anchor {
@@ -166,18 +189,14 @@ fn write_shape(svg: &mut String, shape: &Shape) {
                 Anchor::End => "end",
             };
             let weight = if style.weight > 1.1 { " font-weight=\"bold\"" } else { "" };
-            let (x, y) = (number(at[0]), number(at[1]));
-            let (size, fill) = (number(style.size_px), hex(style.colour));
-            let text = escaped(text);
-            write!(
-                svg,
+            let [x, y, size] = [at[0], at[1], style.size_px].map(number);
+            let (fill, text) = (hex(style.colour), escaped(text));
+            format!(
                 "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\"{weight} \
                  fill=\"{fill}\" xml:space=\"preserve\">{text}</text>"
             )
-            .ok();
         }
     }
-    svg.push('\n');
 }
 
 fn list(points: &[[f64; 2]]) -> String {
@@ -267,10 +286,26 @@ mod tests {
         ] {
             assert!(svg.contains(part), "{part} is not in {svg}");
         }
-        let canvas = drawing.to_canvas();
-        assert_eq!(canvas.pixel(5, 5).to_srgb(), [0, 0, 0]);
-        assert_eq!(canvas.pixel(25, 20).to_srgb(), [200, 0, 0]);
-        assert_eq!(canvas.pixel(50, 5).to_srgb(), [0, 0, 200]);
-        assert_eq!(canvas.pixel(30, 29).to_srgb(), [200, 0, 0]);
+        let bytes = drawing.to_canvas().to_srgb_bytes();
+        let pixel = |x: usize, y: usize| bytes[3 * (60 * y + x)..][..3].to_vec();
+        assert_eq!(pixel(5, 5), [0, 0, 0]);
+        assert_eq!(pixel(25, 20), [200, 0, 0]);
+        assert_eq!(pixel(50, 5), [0, 0, 200]);
+        assert_eq!(pixel(30, 29), [200, 0, 0]);
+    }
+
+    #[test]
+    fn the_ending_of_a_name_says_what_is_written() {
+        let directory = tempfile::tempdir().unwrap();
+        let drawing = Drawing { width: 8, height: 6, shapes: vec![] };
+        for (name, first) in [("a.svg", &b"<svg "[..]), ("b.PNG", &b"\x89PNG"[..])] {
+            drawing.write(&directory.path().join(name)).unwrap();
+            assert!(std::fs::read(directory.path().join(name)).unwrap().starts_with(first), "{name}");
+        }
+        for name in ["c.jpg", "d"] {
+            let path = directory.path().join(name);
+            assert_eq!(drawing.write(&path).unwrap_err().kind(), Kind::Range);
+            assert!(!path.exists());
+        }
     }
 }

@@ -6,9 +6,8 @@
 
 use std::f64::consts::PI;
 
-use crate::plot::glyphs::Stroke;
-use crate::plot::glyphs::Stroke::{A, D, L};
-use crate::plot::glyphs::glyph;
+use super::glyphs::Stroke::{self, A, D, L};
+use super::glyphs::glyph;
 
 /// Units of the glyph tables per type size.
 const UNITS_PER_EM: f64 = 20.0;
@@ -24,11 +23,6 @@ pub struct PenStroke {
     pub points: Vec<[f64; 2]>,
     /// Pen width in pixels.
     pub width_px: f64,
-}
-
-/// Whether a glyph of its own exists for this character; others are drawn as their plain letter or as a box.
-pub fn has_glyph(c: char) -> bool {
-    glyph(c).is_some()
 }
 
 /// Width of a regular pen at this type size, in pixels; never less than one, which would be grey.
@@ -60,6 +54,39 @@ pub fn strokes(text: &str, size_px: f64, hinted: bool) -> Vec<PenStroke> {
         pen_x += advance(c, size_px, hinted);
     }
     laid
+}
+
+/// The text, or as much of it as fits the room with `dots` at its end.
+pub fn shortened(text: &str, size_px: f64, room_px: f64, dots: &str) -> String {
+    if width_px(text, size_px, true) <= room_px {
+        return text.to_owned();
+    }
+    let mut short = String::new();
+    for c in text.chars() {
+        if width_px(&format!("{short}{c}{dots}"), size_px, true) > room_px {
+            break;
+        }
+        short.push(c);
+    }
+    short + dots
+}
+
+/// Lines that fit the room: text that is too long is broken between words.
+pub fn wrapped(text: &str, size_px: f64, room_px: f64) -> Vec<String> {
+    if width_px(text, size_px, true) <= room_px {
+        return vec![text.to_owned()];
+    }
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if width_px(&format!("{line} {word}"), size_px, true) <= room_px => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 fn advance(c: char, size_px: f64, hinted: bool) -> f64 {
@@ -146,11 +173,11 @@ mod tests {
     #[test]
     fn covers_printable_ascii_and_the_signs_of_our_units() {
         for c in (' '..='~').chain(['°', '²', '±', '×', 'µ', '·', '–']) {
-            assert!(has_glyph(c), "no glyph for {c:?}");
+            assert!(glyph(c).is_some(), "no glyph for {c:?}");
             let inked = !strokes(&c.to_string(), 12.0, true).is_empty();
             assert_eq!(inked, c != ' ', "{c:?}");
         }
-        assert!(!has_glyph('\u{4e2d}'));
+        assert!(glyph('\u{4e2d}').is_none());
         assert!(!strokes("\u{4e2d}", 12.0, true).is_empty(), "unknown characters show as a box");
         assert_eq!(strokes("ü", 12.0, true), strokes("u", 12.0, true));
     }

@@ -2,7 +2,7 @@
 
 /// A pen stroke of a glyph, in units of a twentieth of the type size, y upwards.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Stroke {
+pub enum Stroke {
     /// A chain of straight lines.
     L(&'static [(f64, f64)]),
     /// An elliptic arc: centre x, y, radii x, y, first and last angle in degrees, anticlockwise from +x.
@@ -14,7 +14,7 @@ use Stroke::{A, D, L};
 
 /// Width of the glyph's box and its strokes, in units.
 #[rustfmt::skip]
-pub(crate) fn glyph(c: char) -> Option<(f64, &'static [Stroke])> {
+pub fn glyph(c: char) -> Option<(f64, &'static [Stroke])> {
     let found: (f64, &'static [Stroke]) = match c {
         ' ' => (2.4, &[]),
         '!' => (0.0, &[L(&[(0.0, 14.0), (0.0, 4.4)]), D(0.0, 0.5)]),

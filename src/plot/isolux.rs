@@ -1,9 +1,11 @@
 //! Isolux lines for a picture: smoothed as little as legibility allows, with places for their values.
 
-use crate::plot::contour::level_lines;
-use crate::plot::font;
-use crate::plot::resample::{area_average, gaussian};
-use crate::plot::scale::{Axis, Tick};
+use crate::report::colour::scale::{Axis, Tick};
+
+use super::chain::{distance, length};
+use super::contour::level_lines;
+use super::font;
+use super::resample::{area_average, gaussian};
 
 /// Type size of the values on the lines.
 pub const LABEL_SIZE_PX: f64 = 11.0;
@@ -41,7 +43,7 @@ pub struct Label {
 }
 
 /// The lines of a map and how much it was smoothed for them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Isolux {
     /// All lines, by level.
     pub lines: Vec<IsoluxLine>,
@@ -57,7 +59,7 @@ pub fn isolux(values: &[f64], cells: [usize; 2], display: [usize; 2], axis: &Axi
     }
     let grid = [cells[0].min(GRID_LIMIT), cells[1].min(GRID_LIMIT)];
     if grid[0] < 3 || grid[1] < 3 || levels.is_empty() {
-        return Isolux { lines: Vec::new(), smoothing: 0.0 };
+        return Isolux::default();
     }
     let samples = area_average(values, cells, grid);
     let mut best = (Vec::new(), 0.0);
@@ -95,7 +97,7 @@ fn lines_of(extended: &[f64], grid: [usize; 2], display: [usize; 2], levels: &[&
     for &level in levels {
         for line in level_lines(extended, grid[0] + 2, grid[1] + 2, level.value) {
             let place = |p: &[f64; 2]| [(p[0] - 1.0) * scale[0], (p[1] - 1.0) * scale[1]];
-            let points: Vec<_> = line.points.iter().map(place).collect();
+            let points: Vec<_> = line.iter().map(place).collect();
             let length = length(&points);
             if length >= SHORTEST_PX {
                 kept += length;
@@ -220,13 +222,4 @@ fn evenly(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     }
     even.extend(points.last());
     even
-}
-
-fn length(points: &[[f64; 2]]) -> f64 {
-    points.windows(2).map(|p| distance(p[0], p[1])).sum()
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    (dx * dx + dy * dy).sqrt()
 }

@@ -1,16 +1,22 @@
-//! EXR, PNG, false colour, drawing.
+//! Drawings: false-colour maps, polar diagrams, plots of errors, as PNG and SVG.
 //!
 //! Pictures are drawn by our own antialiased canvas and stroke font, so that their bytes depend on nothing but the
-//! numbers drawn: no system font, no graphics library. Every file is written under a temporary name and renamed.
+//! numbers drawn: no system font, no graphics library.
 
-pub mod canvas;
-pub mod colour_map;
-pub mod contour;
-pub mod drawing;
-pub mod false_colour;
-pub mod font;
+mod chain;
+mod coverage;
 mod glyphs;
-pub mod isolux;
-pub mod resample;
-pub mod scale;
-pub mod tone;
+pub mod font;
+mod resample;
+mod contour;
+pub mod canvas;
+pub mod drawing;
+mod page;
+mod isolux;
+mod false_colour;
+pub mod maps;
+pub mod picture;
+mod polar;
+pub mod candela;
+pub mod bsdf;
+pub mod compare;

@@ -7,8 +7,7 @@ use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
 use crate::scene::receiver::{ReceiverEvents, ReceiverSide};
 
-use super::json::why_no_error;
-use super::statistics::ReceiverStatistics;
+use super::statistics::{ReceiverStatistics, why_no_error};
 
 /// Attributes of one receiver's map.
 pub fn attributes(
@@ -52,8 +51,8 @@ pub fn attributes(
         text("caustix.standard_error_absent", why);
     }
     let mut number = |name: &str, value: f64| all.push((name.to_string(), Value::F64(value)));
-    number("caustix.flux_lm", statistics.flux_lm.value);
-    if let Some(error) = statistics.flux_lm.standard_error {
+    number("caustix.flux_lm", statistics.flux_lm);
+    if let Some(error) = statistics.flux_standard_error_lm {
         number("caustix.flux_standard_error_lm", error);
     }
     number("caustix.area_m2", statistics.area_m2);

@@ -8,10 +8,12 @@ use serde::Serialize;
 
 use crate::scattering::integral::slice_albedo;
 use crate::scattering::reciprocity;
+use crate::scattering::value::between;
 use crate::scattering::{Frame, Lobe, LobeSide, Quantity, ScatterTable};
-use crate::units::LUMINANCE_OF_RGB;
+use crate::surface::luminance;
+use crate::surface::tabulated::energy::ONE;
 
-use super::text::{digits, rounded};
+use super::numbers::{digits, printable, rounded, written};
 
 /// Rows of the printed albedo table; of more incidences some are left out.
 const MOST_ROWS: usize = 24;
@@ -139,10 +141,7 @@ impl BsdfSummary {
 
     /// The report for a terminal: one quantity a line, then the albedo against incidence.
     pub fn text(&self) -> String {
-        let mut out = String::new();
-        // Writing to a String cannot fail.
-        let _infallible = self.write(&mut out);
-        out
+        written(|out| self.write(out))
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
@@ -182,7 +181,6 @@ impl LobeSummary {
         for (p, phi_i_deg) in lobe.phi_i_deg.iter().enumerate() {
             for (t, theta_i_deg) in lobe.theta_i_deg.iter().enumerate() {
                 let rgb = (lobe.channels == 3).then(|| [0, 1, 2].map(|c| slice_albedo(lobe, c, p, t)));
-                let luminance = |rgb: [f64; 3]| rgb.iter().zip(LUMINANCE_OF_RGB).map(|(a, w)| a * w).sum();
                 incidences.push(IncidenceSummary {
                     theta_i_deg: *theta_i_deg,
                     phi_i_deg: *phi_i_deg,
@@ -285,8 +283,8 @@ impl LobeSummary {
             incidence.albedo_rgb.map_or(incidence.albedo, |rgb| rgb[channel])
         };
         let mut sum = 0.0;
-        for (p, of_p) in around(&self.phi_i_deg, phi_i_deg) {
-            for (t, of_t) in around(&self.theta_i_deg, theta_i_deg) {
+        for (p, of_p) in between(&self.phi_i_deg, phi_i_deg) {
+            for (t, of_t) in between(&self.theta_i_deg, theta_i_deg) {
                 sum += of_p * of_t * own(p, t);
             }
         }
@@ -325,39 +323,21 @@ fn energy(
     };
     let lobes: Vec<&LobeSummary> =
         table.lobes.iter().zip(summaries).filter(|(lobe, _)| concerned(lobe)).map(|(_, s)| s).collect();
-    let mut most: Option<EnergySummary> = None;
-    for phi in lobes.iter().flat_map(|l| &l.phi_i_deg) {
-        for theta in lobes.iter().flat_map(|l| &l.theta_i_deg) {
-            for channel in 0..3 {
-                let albedo: f64 = lobes.iter().map(|l| l.albedo(channel, *theta, *phi)).sum();
-                if most.as_ref().is_none_or(|m| albedo > m.max_albedo) {
-                    // 1 as far as values in f32 can tell.
-                    let conserved = albedo <= 1.0 + 4.0 * f64::from(f32::EPSILON);
-                    let (theta_i_deg, phi_i_deg) = (*theta, *phi);
-                    most =
-                        Some(EnergySummary { side, max_albedo: albedo, theta_i_deg, phi_i_deg, conserved });
-                }
-            }
-        }
-    }
-    most
+    let at = |theta_i_deg: f64, phi_i_deg: f64, channel: usize| {
+        let max_albedo = lobes.iter().map(|l| l.albedo(channel, theta_i_deg, phi_i_deg)).sum();
+        EnergySummary { side, max_albedo, theta_i_deg, phi_i_deg, conserved: max_albedo <= ONE }
+    };
+    let thetas = || lobes.iter().flat_map(|l| &l.theta_i_deg);
+    let phis = lobes.iter().flat_map(|l| &l.phi_i_deg);
+    let incidences = phis.flat_map(|phi| thetas().map(|theta| (*theta, *phi)));
+    let all = incidences.flat_map(|(theta, phi)| [0, 1, 2].map(|channel| at(theta, phi, channel)));
+    all.reduce(|most, other| if other.max_albedo > most.max_albedo { other } else { most })
 }
 
 /// The least and the greatest; nothing of nothing.
 fn range(values: &[f64]) -> Vec<f64> {
     let over = |pick: fn(f64, f64) -> f64| values.iter().copied().reduce(pick);
     over(f64::min).into_iter().chain(over(f64::max)).collect()
-}
-
-/// The two nodes around x with their weights; the first or the last alone beyond them.
-fn around(nodes: &[f64], x: f64) -> [(usize, f64); 2] {
-    let after = nodes.partition_point(|n| *n <= x);
-    if after == 0 || after == nodes.len() {
-        let only = after.saturating_sub(1);
-        return [(only, 1.0), (only, 0.0)];
-    }
-    let far = (x - nodes[after - 1]) / (nodes[after] - nodes[after - 1]);
-    [(after - 1, 1.0 - far), (after, far)]
 }
 
 fn reciprocity_summary(
@@ -416,9 +396,4 @@ fn degrees(angle_deg: f64) -> String {
 
 fn counted(n: usize, noun: &str) -> String {
     if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") }
-}
-
-/// Names come from files: control characters must not reach a terminal.
-fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

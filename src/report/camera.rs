@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::picture::{Chosen, PictureSummary};
 use crate::scene::camera::CameraSpec;
 
-use super::text::{grouped, rounded};
+use super::numbers::{grouped, rounded, written};
 
 /// The camera of report.json. Names are a contract: they are only added to.
 #[derive(Debug, Clone, Serialize)]
@@ -16,88 +16,42 @@ pub struct CameraReport {
     pub pixels: [u32; 2],
     /// Eye paths a pixel.
     pub samples: u32,
-    /// "map" or "splat".
-    pub method: &'static str,
-    /// Of the densities of a map.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bandwidth: Option<BandwidthReport>,
-    /// Median over lit pixels of the estimated bias, percent of the pixel.
-    pub median_bias_percent: Option<f64>,
-    /// The same of the standard error.
-    pub median_standard_error_percent: Option<f64>,
-    /// Photons that the picture stands for.
-    pub photons: u64,
-    /// Photons kept on surfaces; of a splat: arrivals that reached a pixel.
-    pub photons_kept: u64,
-    /// Passes that the memory for photons made necessary.
-    pub passes: u32,
-    /// Eye paths that were ended because they did not end by themselves.
-    pub eye_paths_killed: u64,
-    /// Splats of a photon that were cut to the largest that is added.
-    pub splats_cut: u64,
-    /// Pixels that an interrupt left unseen: black, with an unknown error.
-    pub pixels_unseen: u64,
-    /// Time of maps and eye paths, s. (What a splat takes is part of the tracing.)
-    pub time_s: f64,
+    /// How its picture was made.
+    #[serde(flatten)]
+    pub picture: PictureSummary,
     /// Files written.
     pub files: Vec<String>,
-}
-
-/// Bandwidths by density.
-#[derive(Debug, Clone, Serialize)]
-pub struct BandwidthReport {
-    /// Of light that no surface scattered before it arrived.
-    pub caustic: Chosen,
-    /// Of light that was scattered before.
-    pub diffuse: Chosen,
 }
 
 impl CameraReport {
     /// Of a picture and its files.
     pub fn new(spec: &CameraSpec, summary: &PictureSummary, files: &[String]) -> Self {
-        Self {
-            pixels: spec.pixels,
-            samples: spec.samples,
-            method: summary.method.word(),
-            bandwidth: summary.bandwidth.map(|[caustic, diffuse]| BandwidthReport { caustic, diffuse }),
-            median_bias_percent: summary.cost.median_bias_percent,
-            median_standard_error_percent: summary.cost.median_standard_error_percent,
-            photons: summary.photons,
-            photons_kept: summary.photons_kept,
-            passes: summary.passes,
-            eye_paths_killed: summary.eye_paths_killed,
-            splats_cut: summary.splats_cut,
-            pixels_unseen: summary.pixels_unseen,
-            time_s: summary.time_s,
-            files: files.to_vec(),
-        }
+        Self { pixels: spec.pixels, samples: spec.samples, picture: summary.clone(), files: files.to_vec() }
     }
 
     /// The same in words, for the printed summary.
     pub fn text(&self) -> String {
-        let mut out = String::new();
-        // Writing to a String cannot fail.
-        let _infallible = self.write(&mut out);
-        out
+        written(|out| self.write(out))
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
-        let [columns, rows] = self.pixels;
+        let (picture, [columns, rows]) = (&self.picture, self.pixels);
         writeln!(
             out,
             "\ncamera: {columns} x {rows} pixels, {} samples each, method {}",
-            self.samples, self.method
+            self.samples,
+            picture.method.word()
         )?;
-        let (kept, of) = (grouped(self.photons_kept), grouped(self.photons));
-        match &self.bandwidth {
-            Some(bandwidth) => {
-                let passes = if self.passes == 1 { "pass" } else { "passes" };
+        let (kept, of) = (grouped(picture.photons_kept), grouped(picture.photons));
+        match &picture.bandwidth {
+            Some([caustic, diffuse]) => {
+                let passes = if picture.passes == 1 { "pass" } else { "passes" };
                 writeln!(
                     out,
                     "  photons      {kept} arrivals kept, of {of} photons, in {} {passes}",
-                    self.passes
+                    picture.passes
                 )?;
-                let (caustic, diffuse) = (described(&bandwidth.caustic), described(&bandwidth.diffuse));
+                let (caustic, diffuse) = (described(caustic), described(diffuse));
                 writeln!(out, "  bandwidth    caustics {caustic}; light scattered before {diffuse}")?;
             }
             None => {
@@ -109,16 +63,16 @@ impl CameraReport {
         writeln!(
             out,
             "  error        standard error {}, bias {} of a pixel (medians)",
-            percent(self.median_standard_error_percent),
-            percent(self.median_bias_percent)
+            percent(picture.cost.median_standard_error_percent),
+            percent(picture.cost.median_bias_percent)
         )?;
         for (number, what) in [
-            (self.pixels_unseen, "pixels not seen before the interrupt: black, their error unknown"),
+            (picture.pixels_unseen, "pixels not seen before the interrupt: black, their error unknown"),
             (
-                self.eye_paths_killed,
+                picture.eye_paths_killed,
                 "eye paths ended by the guard against endless ones: their light is missing",
             ),
-            (self.splats_cut, "splats cut: the pinhole all but touches a surface"),
+            (picture.splats_cut, "splats cut: the pinhole all but touches a surface"),
         ] {
             if number > 0 {
                 writeln!(out, "  missing      {} {what}", grouped(number))?;
@@ -127,7 +81,7 @@ impl CameraReport {
         if !self.files.is_empty() {
             writeln!(out, "  files        {}", self.files.join(", "))?;
         }
-        writeln!(out, "  time         {:.2} s", self.time_s)
+        writeln!(out, "  time         {:.2} s", picture.time_s)
     }
 }
 

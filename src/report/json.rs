@@ -4,16 +4,51 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::run::{Outcome, StoppedBy};
+use crate::error::{Diagnostic, Kind, Result};
+use crate::run::{Estimate, Outcome, Plan, StoppedBy};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
+use crate::transport::census::Exceptions;
 
 use super::camera::CameraReport;
-use super::statistics::ReceiverStatistics;
+use super::statistics::{ReceiverStatistics, why_no_error};
 
 /// Everything report.json says. Names are a contract: they are only added to.
 #[derive(Debug, Clone, Serialize)]
-pub struct Report {
+pub struct Report<'a> {
+    /// What was run.
+    #[serde(flatten)]
+    pub run: RunReport,
+    /// Photons that were asked for.
+    pub photons_planned: u64,
+    /// Replicates that the results stand for.
+    pub replicates: u32,
+    /// Why there is no standard error, where there is none.
+    pub standard_error_absent: Option<&'static str>,
+    /// Times.
+    pub time: TimeReport,
+    /// Where the flux went.
+    pub ledger_lm: LedgerReport,
+    /// The same in photons: integers that balance exactly.
+    pub ledger_photons: LedgerPhotons,
+    /// Coordinates a photon.
+    pub dimension: DimensionReport,
+    /// Things that geometry and smooth normals made necessary.
+    pub exceptions: Exceptions,
+    /// Receivers in the order of the scene.
+    pub receivers: Vec<ReceiverReport<'a>>,
+    /// The camera, where the scene has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraReport>,
+    /// "photons" or "interrupt".
+    pub stopped_by: &'static str,
+    /// Warnings about the scene and its files.
+    pub warnings: Vec<String>,
+}
+
+/// What stands at the head of every report.json.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunReport {
     /// Version of the program.
     pub caustix: &'static str,
     /// The scene.
@@ -32,31 +67,24 @@ pub struct Report {
     pub seed: u64,
     /// Photons that the results stand for.
     pub photons: u64,
-    /// Photons that were asked for.
-    pub photons_planned: u64,
-    /// Replicates that the results stand for.
-    pub replicates: u32,
-    /// Why there is no standard error, where there is none.
-    pub standard_error_absent: Option<&'static str>,
-    /// Times.
-    pub time: TimeReport,
-    /// Where the flux went.
-    pub ledger_lm: LedgerReport,
-    /// The same in photons: integers that balance exactly.
-    pub ledger_photons: LedgerPhotons,
-    /// Coordinates a photon.
-    pub dimension: DimensionReport,
-    /// Things that geometry and smooth normals made necessary.
-    pub exceptions: ExceptionsReport,
-    /// Receivers in the order of the scene.
-    pub receivers: Vec<ReceiverReport>,
-    /// The camera, where the scene has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub camera: Option<CameraReport>,
-    /// "photons" or "interrupt".
-    pub stopped_by: &'static str,
-    /// Warnings about the scene and its files.
-    pub warnings: Vec<String>,
+}
+
+impl RunReport {
+    /// Of a run by this plan, with the number of photons that its results stand for.
+    pub fn new(scene: &Scene, plan: &Plan, photons: u64) -> Self {
+        let algorithm = plan.algorithm();
+        let rejects = algorithm.variant.rejects();
+        Self {
+            caustix: env!("CARGO_PKG_VERSION"),
+            scene: SceneReport::new(scene),
+            variant: algorithm.variant.name(),
+            sequence: algorithm.sequence.name(),
+            solver: (!rejects).then(|| algorithm.solver.name()),
+            rejection: rejects.then(|| algorithm.rejection.name()),
+            seed: plan.seed(),
+            photons,
+        }
+    }
 }
 
 /// The scene of a report.
@@ -92,30 +120,34 @@ pub struct TimeReport {
     pub photons_per_s: f64,
 }
 
+/// Where photons ended.
+#[derive(Debug, Clone, Serialize)]
+pub struct Accounts<T> {
+    /// Absorbed by each surface.
+    pub absorbed: BTreeMap<String, T>,
+    /// Left the scene.
+    pub escaped: T,
+    /// Ended by the guard against endless walks.
+    pub killed: T,
+}
+
+impl<T> Accounts<T> {
+    fn new(scene: &Scene, absorbed: impl Fn(usize) -> T, escaped: T, killed: T) -> Self {
+        let surfaces = scene.geometry.surfaces().iter().enumerate();
+        Self { absorbed: surfaces.map(|(i, s)| (s.name.clone(), absorbed(i))).collect(), escaped, killed }
+    }
+}
+
 /// Flux by account, lm.
 #[derive(Debug, Clone, Serialize)]
 pub struct LedgerReport {
     /// Emitted.
     pub emitted: f64,
-    /// Absorbed by each surface.
-    pub absorbed: BTreeMap<String, f64>,
-    /// Left the scene.
-    pub escaped: f64,
-    /// Ended by the guard against endless walks.
-    pub killed: f64,
+    /// Where it ended.
+    #[serde(flatten)]
+    pub ended: Accounts<f64>,
     /// Standard errors of the accounts: surfaces by name, `escaped`, `killed`; absent for one replicate.
-    pub standard_error: Option<LedgerErrors>,
-}
-
-/// Standard errors by account, lm.
-#[derive(Debug, Clone, Serialize)]
-pub struct LedgerErrors {
-    /// Absorbed by each surface.
-    pub absorbed: BTreeMap<String, f64>,
-    /// Left the scene.
-    pub escaped: f64,
-    /// Ended by the guard.
-    pub killed: f64,
+    pub standard_error: Option<Accounts<f64>>,
 }
 
 /// Photons by account.
@@ -123,12 +155,9 @@ pub struct LedgerErrors {
 pub struct LedgerPhotons {
     /// Emitted, by emitter.
     pub emitted: BTreeMap<String, u64>,
-    /// Absorbed, by surface.
-    pub absorbed: BTreeMap<String, u64>,
-    /// Left the scene.
-    pub escaped: u64,
-    /// Ended by the guard.
-    pub killed: u64,
+    /// Where they ended.
+    #[serde(flatten)]
+    pub ended: Accounts<u64>,
 }
 
 /// Constructive dimension.
@@ -144,69 +173,35 @@ pub struct DimensionReport {
     pub mean_by_purpose: BTreeMap<&'static str, f64>,
 }
 
-/// Counted exceptions.
-#[derive(Debug, Clone, Serialize)]
-pub struct ExceptionsReport {
-    /// Crossings seen twice through rounding and skipped.
-    pub skipped_crossings: u64,
-    /// Directions that smooth normals sent to the wrong side of a facet and that were mirrored back.
-    pub corrected_directions: u64,
-    /// Photons that scattering tables sent below the horizon, absorbed there.
-    pub below_horizon: u64,
-}
-
 /// One receiver.
 #[derive(Debug, Clone, Serialize)]
-pub struct ReceiverReport {
+pub struct ReceiverReport<'a> {
     /// Name.
-    pub name: String,
-    /// Flux that arrived, lm.
-    pub flux_lm: f64,
-    /// Its standard error, lm.
-    pub flux_standard_error_lm: Option<f64>,
-    /// Least illuminance of a cell, lx.
-    pub min_lx: f64,
-    /// Mean illuminance, lx.
-    pub mean_lx: f64,
-    /// Greatest illuminance of a cell, lx.
-    pub max_lx: f64,
-    /// min / mean.
-    pub uniformity_u0: Option<f64>,
-    /// Area, m2.
-    pub area_m2: f64,
-    /// Number of cells.
-    pub cells: usize,
-    /// Expected root-mean-square error of a cell over the mean illuminance, from the replicates.
-    pub expected_nrms: Option<f64>,
+    pub name: &'a str,
+    /// Its numbers.
+    #[serde(flatten)]
+    pub numbers: &'a ReceiverStatistics,
     /// Files written for it.
-    pub files: Vec<String>,
+    pub files: &'a [String],
 }
 
-impl Report {
+impl<'a> Report<'a> {
     /// The report of a run. `files` names what was written for each receiver.
     pub fn new(
-        scene: &Scene,
+        scene: &'a Scene,
         outcome: &Outcome,
-        statistics: &[ReceiverStatistics],
-        files: &[Vec<String>],
+        statistics: &'a [ReceiverStatistics],
+        files: &'a [Vec<String>],
         total_s: f64,
     ) -> Self {
-        let surfaces = scene.geometry.surfaces();
-        let by_surface = |f: &dyn Fn(usize) -> f64| -> BTreeMap<String, f64> {
-            surfaces.iter().enumerate().map(|(i, s)| (s.name.clone(), f(i))).collect()
+        let ledger = &outcome.ledger;
+        let lumens = |of: &dyn Fn(Estimate) -> f64| {
+            let absorbed = |i| of(outcome.absorbed_lm(i));
+            Accounts::new(scene, absorbed, of(outcome.escaped_lm()), of(outcome.killed_lm()))
         };
-        let error = |e: crate::run::Estimate| e.standard_error.unwrap_or(0.0);
         let photons = outcome.photons as f64;
-        let rejects = outcome.plan.algorithm().variant.rejects();
         Self {
-            caustix: env!("CARGO_PKG_VERSION"),
-            scene: SceneReport::new(scene),
-            variant: outcome.plan.algorithm().variant.name(),
-            sequence: outcome.plan.algorithm().sequence.name(),
-            solver: (!rejects).then(|| outcome.plan.algorithm().solver.name()),
-            rejection: rejects.then(|| outcome.plan.algorithm().rejection.name()),
-            seed: outcome.plan.seed(),
-            photons: outcome.photons,
+            run: RunReport::new(scene, &outcome.plan, outcome.photons),
             photons_planned: outcome.plan.photons(),
             replicates: outcome.replicates,
             standard_error_absent: why_no_error(outcome),
@@ -216,30 +211,14 @@ impl Report {
                 photons_per_s: if outcome.trace_s > 0.0 { photons / outcome.trace_s } else { 0.0 },
             },
             ledger_lm: LedgerReport {
-                emitted: outcome.ledger.total_emitted() as f64 * outcome.photon_lm,
-                absorbed: by_surface(&|i| outcome.absorbed_lm(i).value),
-                escaped: outcome.escaped_lm().value,
-                killed: outcome.killed_lm().value,
-                standard_error: (outcome.replicates > 1).then(|| LedgerErrors {
-                    absorbed: by_surface(&|i| error(outcome.absorbed_lm(i))),
-                    escaped: error(outcome.escaped_lm()),
-                    killed: error(outcome.killed_lm()),
-                }),
+                emitted: ledger.total_emitted() as f64 * outcome.photon_lm,
+                ended: lumens(&|e| e.value),
+                standard_error: (outcome.replicates > 1)
+                    .then(|| lumens(&|e| e.standard_error.unwrap_or(0.0))),
             },
             ledger_photons: LedgerPhotons {
-                emitted: scene
-                    .emitter_names
-                    .iter()
-                    .cloned()
-                    .zip(outcome.ledger.emitted.iter().copied())
-                    .collect(),
-                absorbed: surfaces
-                    .iter()
-                    .map(|s| s.name.clone())
-                    .zip(outcome.ledger.absorbed.iter().copied())
-                    .collect(),
-                escaped: outcome.ledger.escaped,
-                killed: outcome.ledger.killed,
+                emitted: scene.emitter_names.iter().cloned().zip(ledger.emitted.iter().copied()).collect(),
+                ended: Accounts::new(scene, |i| ledger.absorbed[i], ledger.escaped, ledger.killed),
             },
             dimension: DimensionReport {
                 mean: outcome.census.dimension_mean(),
@@ -250,29 +229,13 @@ impl Report {
                     .map(|p| (p.label(), outcome.census.drawn_for[*p as usize] as f64 / photons))
                     .collect(),
             },
-            exceptions: ExceptionsReport {
-                skipped_crossings: outcome.census.exceptions.skipped_crossings,
-                corrected_directions: outcome.census.exceptions.corrected_directions,
-                below_horizon: outcome.census.exceptions.below_horizon,
-            },
+            exceptions: outcome.census.exceptions,
             receivers: scene
                 .receivers
                 .iter()
                 .zip(statistics)
                 .zip(files)
-                .map(|((receiver, s), files)| ReceiverReport {
-                    name: receiver.name.clone(),
-                    flux_lm: s.flux_lm.value,
-                    flux_standard_error_lm: s.flux_lm.standard_error,
-                    min_lx: s.min_lx,
-                    mean_lx: s.mean_lx,
-                    max_lx: s.max_lx,
-                    uniformity_u0: s.uniformity_u0,
-                    area_m2: s.area_m2,
-                    cells: receiver.cells.len(),
-                    expected_nrms: s.expected_nrms,
-                    files: files.clone(),
-                })
+                .map(|((receiver, numbers), files)| ReceiverReport { name: &receiver.name, numbers, files })
                 .collect(),
             camera: None,
             stopped_by: match outcome.stopped_by {
@@ -284,13 +247,13 @@ impl Report {
     }
 }
 
-/// Why a run has no standard error, where it has none.
-pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
-    match (outcome.replicates, outcome.plan.algorithm().sequence.is_randomised()) {
-        (2.., _) => None,
-        (_, false) => {
-            Some("this sequence has no seed: there is one replicate, and one set of points has no spread")
-        }
-        (_, true) => Some("one replicate: the points of one set are not independent of each other"),
-    }
+/// A value as JSON text, indented, with a line break at its end.
+///
+/// # Errors
+/// [`Kind::Io`] where JSON cannot hold it.
+pub fn json(value: &impl Serialize) -> Result<String> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| {
+        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing JSON"), "numbers that JSON can hold")
+    })?;
+    Ok(text + "\n")
 }

@@ -1,55 +1,18 @@
-//! The files of each receiver: an EXR for every one, a false-colour PNG where the cells lie in a plane or a (u, v) map, a
-//! CSV and a PLY where they are faces of a mesh.
+//! The files of a receiver: EXR for every one, CSV (and PLY, [`super::ply`]) where the cells are faces of a mesh.
 
 use std::io::Write;
 use std::path::Path;
 
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
-use crate::files::exr::{Channel, Data, write_maps};
-use crate::plot::false_colour::{FalseColour, Quantity};
-use crate::plot::scale::Scale;
+use crate::files::exr::{Channel, Data, Light, write_maps};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
 
 use super::attributes::attributes;
-use super::ply::write_ply;
+use super::numbers::bare;
 use super::statistics::ReceiverStatistics;
-use super::text::{grouped, rounded, with_error};
-
-/// Writes the files of one receiver into a directory that exists; their names.
-///
-/// # Errors
-/// A file that cannot be written; files written before it stay.
-pub fn write_receiver(
-    directory: &Path,
-    scene: &Scene,
-    outcome: &Outcome,
-    receiver: &Receiver,
-    statistics: &ReceiverStatistics,
-) -> Result<Vec<String>> {
-    let mut files = vec![format!("{}.exr", receiver.name)];
-    write_exr(&directory.join(&files[0]), scene, outcome, receiver, statistics)?;
-    match receiver.cells {
-        Cells::Grid { nu, nv } => {
-            let name = format!("{}.png", receiver.name);
-            picture(outcome, receiver, statistics, [nu as usize, nv as usize])
-                .write_png(directory.join(&name))?;
-            files.push(name);
-        }
-        Cells::Faces { .. } => {
-            let name = format!("{}.csv", receiver.name);
-            write_faces(&directory.join(&name), scene, receiver, statistics)?;
-            files.push(name);
-            let name = format!("{}.ply", receiver.name);
-            if write_ply(&directory.join(&name), scene, outcome, receiver, statistics)? {
-                files.push(name);
-            }
-        }
-    }
-    Ok(files)
-}
 
 /// Pixels of a receiver's EXR.
 fn exr_size(cells: Cells) -> (usize, usize) {
@@ -62,7 +25,12 @@ fn exr_size(cells: Cells) -> (usize, usize) {
     }
 }
 
-fn write_exr(
+/// Writes a receiver's map as EXR: `illuminance` and `standard_error` in lx, `hits`; everything needed to repeat the run as
+/// attributes. The faces of a mesh fill rows of equal length, NaN beyond the last.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_exr(
     path: &Path,
     scene: &Scene,
     outcome: &Outcome,
@@ -84,59 +52,38 @@ fn write_exr(
         Channel { name: "standard_error", data: Data::F32(&error) },
         Channel { name: "hits", data: Data::U32(&hits) },
     ];
-    write_maps(path, width, height, &channels, &attributes(scene, outcome, receiver, statistics))
+    write_maps(
+        path,
+        [width, height],
+        &channels,
+        &attributes(scene, outcome, receiver, statistics),
+        Light::Other,
+    )
 }
 
-fn picture<'a>(
-    outcome: &Outcome,
-    receiver: &'a Receiver,
-    s: &'a ReceiverStatistics,
-    [width, height]: [usize; 2],
-) -> FalseColour<'a> {
-    let error = match s.expected_nrms {
-        Some(nrms) => format!("cell error {} % of the mean (rms)", rounded(100.0 * nrms, 3)),
-        None => "no standard error (one replicate)".to_string(),
-    };
-    let flux = format!("flux {}", with_error(s.flux_lm.value, s.flux_lm.standard_error, "lm"));
-    FalseColour {
-        title: &receiver.name,
-        width,
-        height,
-        quantity: Quantity::Illuminance,
-        values: &s.illuminance_lx,
-        size_m: receiver.size_m,
-        scale: Scale::Auto,
-        isolux: true,
-        footer: vec![flux, format!("{} photons, {error}", grouped(outcome.photons))],
-    }
-}
-
-/// One row a face: number, centroid, area, illuminance, standard error, hits.
-fn write_faces(
+/// Writes a receiver's faces as CSV, one row a face: number, centroid (m), area (m2), illuminance and standard error (lx,
+/// empty where unknown), hits; false, and no file, where its cells are no faces.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_csv(
     path: &Path,
     scene: &Scene,
     receiver: &Receiver,
     statistics: &ReceiverStatistics,
-) -> Result<()> {
+) -> Result<bool> {
+    let Cells::Faces { count } = receiver.cells else { return Ok(false) };
     let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
     write_atomically(path, |out| {
         writeln!(out, "face,x_m,y_m,z_m,area_m2,illuminance_lx,standard_error_lx,hits")?;
-        for face in 0..receiver.cells.len() {
+        for face in 0..count {
             let Some([a, b, c]) = shape.triangle(face) else { continue };
             let m = (a + b + c) / 3.0;
-            let error = statistics.standard_error_lx[face];
-            let error = if error.is_nan() { String::new() } else { error.to_string() };
-            writeln!(
-                out,
-                "{face},{},{},{},{},{},{error},{}",
-                m.x,
-                m.y,
-                m.z,
-                receiver.area_m2(face),
-                statistics.illuminance_lx[face],
-                statistics.hits[face]
-            )?;
+            let (area, lux) = (receiver.area_m2(face), statistics.illuminance_lx[face]);
+            let (error, hits) = (bare(Some(statistics.standard_error_lx[face])), statistics.hits[face]);
+            writeln!(out, "{face},{},{},{},{area},{lux},{error},{hits}", m.x, m.y, m.z)?;
         }
         Ok(())
-    })
+    })?;
+    Ok(true)
 }

@@ -1,19 +1,20 @@
-//! What a run says: report.json, the printed summary, the files of each receiver; what a study says: [`compare`].
+//! What a run says: report.json, the printed summary, maps as EXR, CSV and PLY; what a study says: [`compare`], [`room`].
+//!
+//! Numbers, text and plain files only: what is drawn is in `plot`, which comes after this room.
 
-pub mod attributes;
-pub mod bsdf;
-pub mod bsdf_plot;
-pub mod camera;
-pub mod candela;
-pub mod compare;
-pub mod json;
-pub mod maps;
-pub mod picture;
-pub mod ply;
-pub mod polar;
-pub mod room;
-pub mod saved;
+pub mod numbers;
+pub mod colour;
 pub mod statistics;
+pub mod attributes;
+pub mod maps;
+pub mod ply;
+pub mod picture;
+pub mod camera;
+pub mod json;
+pub mod saved;
 pub mod text;
-
-pub use json::Report;
+pub mod photometry;
+pub mod bsdf;
+pub mod certificate;
+pub mod compare;
+pub mod room;

@@ -11,12 +11,12 @@ use std::path::Path;
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
 use crate::geometry::{Mesh, Shape};
-use crate::plot::false_colour::value_colour;
-use crate::plot::scale::{Axis, Scale};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 
+use super::colour::map::value_colour;
+use super::colour::scale::Axis;
 use super::statistics::ReceiverStatistics;
 
 /// Writes the faces of one receiver; false, and no file, where its surface is no mesh.
@@ -46,7 +46,7 @@ pub fn write_ply(
                 out.write_all(&x.to_le_bytes())?;
             }
         }
-        let axis = Axis::fit(&statistics.illuminance_lx, Scale::Auto);
+        let axis = Axis::fit(&statistics.illuminance_lx);
         for face in 0..mesh.triangles().len() {
             out.write_all(&face_bytes(mesh, statistics, &axis, face))?;
         }

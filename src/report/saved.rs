@@ -8,30 +8,15 @@ use crate::run::Plan;
 use crate::scene::Scene;
 
 use super::camera::CameraReport;
-use super::json::SceneReport;
+use super::json::RunReport;
 
 /// Everything report.json says where nothing was traced. What it shares with [`super::Report`] has the same names; flux and
 /// receivers are in the report of the run that saved the photons. Names are a contract: they are only added to.
 #[derive(Debug, Clone, Serialize)]
 pub struct SavedReport {
-    /// Version of the program.
-    pub caustix: &'static str,
-    /// The scene.
-    pub scene: SceneReport,
-    /// Algorithm variant that the photons were traced by.
-    pub variant: &'static str,
-    /// Point sequence.
-    pub sequence: &'static str,
-    /// Solver of the cell equation of a variant that inverts.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub solver: Option<&'static str>,
-    /// How a variant that rejects does it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rejection: Option<&'static str>,
-    /// Seed.
-    pub seed: u64,
-    /// Photons that the picture stands for.
-    pub photons: u64,
+    /// What was run.
+    #[serde(flatten)]
+    pub run: RunReport,
     /// Replicates they were traced in.
     pub replicates: u32,
     /// The file of photons, as given.
@@ -56,17 +41,8 @@ pub struct SavedTime {
 impl SavedReport {
     /// The report of a picture of the photons in this file, which a run by this plan saved.
     pub fn new(scene: &Scene, plan: &Plan, map: &Path, camera: CameraReport, total_s: f64) -> Self {
-        let algorithm = plan.algorithm();
-        let rejects = algorithm.variant.rejects();
         Self {
-            caustix: env!("CARGO_PKG_VERSION"),
-            scene: SceneReport::new(scene),
-            variant: algorithm.variant.name(),
-            sequence: algorithm.sequence.name(),
-            solver: (!rejects).then(|| algorithm.solver.name()),
-            rejection: rejects.then(|| algorithm.rejection.name()),
-            seed: plan.seed(),
-            photons: camera.photons,
+            run: RunReport::new(scene, plan, camera.picture.photons),
             replicates: plan.replicates(),
             map: map.display().to_string(),
             time: SavedTime { total_s },

@@ -1,21 +1,26 @@
 //! Numbers of one receiver: flux, least, mean and greatest illuminance, uniformity, typical error of a cell.
 
-use crate::run::{Estimate, Outcome};
+use serde::Serialize;
+
+use crate::run::Outcome;
 use crate::scene::receiver::Receiver;
 
-/// A receiver's map in lux, and the numbers that sum it up.
-#[derive(Debug, Clone)]
+/// A receiver's map in lux, and the numbers that sum it up. Names are those of report.json: they are only added to.
+#[derive(Debug, Clone, Serialize)]
 pub struct ReceiverStatistics {
     /// Illuminance of every cell, lx, row by row from the top left or face by face.
+    #[serde(skip)]
     pub illuminance_lx: Vec<f64>,
     /// Standard error of every cell, lx; NaN where one replicate leaves it unknown.
+    #[serde(skip)]
     pub standard_error_lx: Vec<f64>,
     /// Photons counted in every cell.
+    #[serde(skip)]
     pub hits: Vec<u64>,
     /// Flux that arrived, lm.
-    pub flux_lm: Estimate,
-    /// Area of all cells, m2.
-    pub area_m2: f64,
+    pub flux_lm: f64,
+    /// Its standard error, lm; `None` for one replicate.
+    pub flux_standard_error_lm: Option<f64>,
     /// Least illuminance of a cell, lx.
     pub min_lx: f64,
     /// Flux over area, lx.
@@ -24,6 +29,10 @@ pub struct ReceiverStatistics {
     pub max_lx: f64,
     /// U0 = min / mean; `None` where nothing arrived.
     pub uniformity_u0: Option<f64>,
+    /// Area of all cells, m2.
+    pub area_m2: f64,
+    /// Number of cells.
+    pub cells: usize,
     /// sqrt(area-weighted mean of the squared standard errors of the cells) / mean illuminance: what nRMS to expect against the truth.
     pub expected_nrms: Option<f64>,
 }
@@ -31,11 +40,11 @@ pub struct ReceiverStatistics {
 impl ReceiverStatistics {
     /// The numbers of receiver number `index`.
     pub fn new(outcome: &Outcome, receiver: &Receiver, index: usize) -> Self {
-        let n = receiver.cells.len();
-        let mut illuminance_lx = Vec::with_capacity(n);
-        let mut standard_error_lx = Vec::with_capacity(n);
+        let cells = receiver.cells.len();
+        let mut illuminance_lx = Vec::with_capacity(cells);
+        let mut standard_error_lx = Vec::with_capacity(cells);
         let mut variance = 0.0;
-        for cell in 0..n {
+        for cell in 0..cells {
             let area = receiver.area_m2(cell);
             let estimate = outcome.illuminance_lx(index, cell, area);
             let error = estimate.standard_error.unwrap_or(f64::NAN);
@@ -43,23 +52,36 @@ impl ReceiverStatistics {
             illuminance_lx.push(estimate.value);
             standard_error_lx.push(error);
         }
-        let flux_lm = outcome.receiver_flux_lm(index);
+        let flux = outcome.receiver_flux_lm(index);
         let area_m2 = receiver.total_area_m2();
-        let mean_lx = flux_lm.value / area_m2;
+        let mean_lx = flux.value / area_m2;
         let min_lx = illuminance_lx.iter().copied().fold(f64::INFINITY, f64::min);
         let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
         let lit = mean_lx > 0.0;
         Self {
             hits: outcome.cells()[index].sum.clone(),
-            flux_lm,
-            area_m2,
+            flux_lm: flux.value,
+            flux_standard_error_lm: flux.standard_error,
             min_lx,
             mean_lx,
             max_lx,
             uniformity_u0: lit.then(|| min_lx / mean_lx),
+            area_m2,
+            cells,
             expected_nrms: (lit && outcome.replicates > 1).then(|| (variance / area_m2).sqrt() / mean_lx),
             illuminance_lx,
             standard_error_lx,
         }
+    }
+}
+
+/// Why a run has no standard error, where it has none.
+pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
+    match (outcome.replicates, outcome.plan.algorithm().sequence.is_randomised()) {
+        (2.., _) => None,
+        (_, false) => {
+            Some("this sequence has no seed: there is one replicate, and one set of points has no spread")
+        }
+        (_, true) => Some("one replicate: the points of one set are not independent of each other"),
     }
 }

@@ -174,7 +174,7 @@ impl<F> Stage<'_, '_, F> {
             s if s.skips_points() => advance(scene, points, &how, start, wanted),
             Sampling::Inverse(_) | Sampling::Rejection(_) => start + wanted,
         };
-        (trace_range(scene, points, start..end, carried, how, sink), end)
+        (trace_range(scene, &scene.emitters, points, start..end, carried, how, sink), end)
     }
 }
 

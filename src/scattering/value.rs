@@ -81,7 +81,7 @@ fn slice_value(lobe: &Lobe, channel: usize, phi_i: usize, theta_i: usize, polar:
 }
 
 /// The two nodes around x with their weights; the first or the last alone beyond them.
-fn between(nodes: &[f64], x: f64) -> [(usize, f64); 2] {
+pub fn between(nodes: &[f64], x: f64) -> [(usize, f64); 2] {
     let last = nodes.len() - 1;
     let after = nodes.partition_point(|n| *n <= x);
     if after == 0 {

@@ -6,7 +6,7 @@ use crate::sample::coordinates::Purpose;
 pub const LONGEST_DIMENSION: usize = 64;
 
 /// Things that geometry and smooth normals make necessary now and then, counted so that they are never hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Exceptions {
     /// Candidate hits that were the crossing just made, seen again through rounding.
     pub skipped_crossings: u64,

@@ -178,7 +178,7 @@ fn part<'s, P: Points>(scene: &'s Scene, points: &P, range: Range<u64>) -> (Rece
     let receivers = Receivers::new(&scene.geometry, &scene.receivers);
     let interrupt = AtomicBool::new(false);
     let how = How { sampling: Sampling::default(), reuse: true, interrupt: &interrupt, progress: &|_| {} };
-    let traced = trace_range(scene, points, range, Grey, how, || receivers.sink());
+    let traced = trace_range(scene, &scene.emitters, points, range, Grey, how, || receivers.sink());
     assert!(traced.complete);
     (receivers, traced)
 }

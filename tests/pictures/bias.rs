@@ -1,9 +1,9 @@
 //! The photon map's pictures of caustics against splatted ones: what the bias figure promises, and how the bias shrinks.
 //! `examples/picture_bias.rs` measures the same with more photons and on more scenes.
 
-use caustix::lab::study::picture_bias::{Reference, Row, mapped, rate, splatted};
 use caustix::scene::camera::{Bandwidth, CameraSpec};
 
+use crate::picture_bias::{Reference, Row, mapped, rate, splatted};
 use crate::support::caustic_views::{View, ball, pane, plan};
 use crate::support::pictures::camera;
 

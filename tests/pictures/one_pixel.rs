@@ -21,7 +21,7 @@ use crate::photons::{choice, density_of};
 pub use crate::support::pictures::camera;
 
 /// The photons of some replicates of 2^m photons each, as a run keeps them: (caustic, diffuse).
-pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
+pub fn photons(scene: &Scene, replicates: Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
     let mut store = PhotonStore::<1>::new(scene);
     let nobody = Receivers::new(&scene.geometry, &[]);
     let interrupt = AtomicBool::new(false);
@@ -29,7 +29,7 @@ pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u6
         let how =
             How { reuse: true, sampling: Sampling::default(), interrupt: &interrupt, progress: &|_| {} };
         let sink = || store.sink(nobody.sink(), replicate);
-        trace_range(scene, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
+        trace_range(scene, &scene.emitters, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
     }
     let frame = store.frame();
     store.take().unwrap().map(|blocks| PhotonMap::build(blocks.concat(), frame, 1.0))

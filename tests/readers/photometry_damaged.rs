@@ -20,7 +20,7 @@ fn survives(bytes: &[u8]) -> bool {
             for (v, h) in [(0.0, 0.0), (90.0, 359.999), (-12.5, -90.0), (180.0, 1e9), (f64::NAN, f64::NAN)] {
                 assert!(photometry.web.intensity_cd(v, h) >= 0.0);
             }
-            let text = caustix::cli::photometry::report_text(&photometry, &summary);
+            let text = caustix::report::photometry::text(&photometry, &summary);
             assert!(text.contains("flux"));
             true
         }

@@ -1,17 +1,17 @@
 //! How a study is shown and kept, from made-up studies whose laws, ratios and limits are known.
 
+use caustix::files::atomic::write_each;
 use caustix::lab::study::fit::Uncertainty;
 use caustix::lab::study::norms::Errors;
 use caustix::lab::study::results::Study;
 use caustix::lab::study::table::Table;
 use caustix::plot::canvas::Anchor;
+use caustix::plot::compare::drawing;
 use caustix::plot::drawing::Shape;
 use caustix::plot::font;
 use caustix::report::compare::csv::{HEADER, csv};
 use caustix::report::compare::markdown::markdown;
-use caustix::report::compare::plot::drawing;
 use caustix::report::compare::text::{WIDTH, text};
-use caustix::report::compare::write_files;
 
 use crate::made_up::{ASKED, GRIDS, ladder, study};
 
@@ -232,7 +232,7 @@ fn the_plot_has_every_point_its_bars_and_legible_text_on_the_page() {
     assert_eq!(lines.iter().filter(|l| **l == (10, 2.0)).count(), 3, "a line of ten points a panel");
     assert_eq!(lines.iter().filter(|l| **l == (2, 1.4)).count(), 3 * 10 * 3, "bars with two caps");
     // Monte Carlo's black discs are drawn last: nothing hides one in the picture of the same shapes.
-    let canvas = drawing.to_canvas();
+    let bytes = drawing.to_canvas().to_srgb_bytes();
     let discs = drawing.shapes.iter().filter_map(|shape| match shape {
         Shape::Polygon { corners, colour } if corners.len() == 24 && colour.to_srgb() == [0; 3] => {
             Some(corners)
@@ -242,7 +242,8 @@ fn the_plot_has_every_point_its_bars_and_legible_text_on_the_page() {
     let mut seen = 0;
     for corners in discs {
         let middle = |k: usize| corners.iter().map(|c| c[k]).sum::<f64>() / 24.0;
-        assert_eq!(canvas.pixel(middle(0) as usize, middle(1) as usize).to_srgb(), [0; 3]);
+        let at = 3 * (middle(1) as usize * drawing.width + middle(0) as usize);
+        assert_eq!(bytes[at..at + 3], [0; 3]);
         seen += 1;
     }
     assert_eq!(seen, 1 + 3 * 10, "the legend's and every point's");
@@ -282,10 +283,15 @@ fn files_are_written_and_one_that_cannot_be_keeps_no_other() {
     let table = Table::new(&study);
     let directory = tempfile::tempdir().unwrap();
     std::fs::create_dir_all(directory.path().join("compare.md/occupied")).unwrap();
-    let files = write_files(&study, &table, directory.path());
-    let names: Vec<_> = files.written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!((names, files.errors.len()), (vec!["compare.csv", "compare.svg"], 1));
-    assert_eq!(std::fs::read_to_string(&files.written[0]).unwrap(), csv(&study, &table));
+    let files = [
+        ("compare.csv", csv(&study, &table)),
+        ("compare.md", markdown(&study, &table)),
+        ("compare.svg", drawing(&study, &table).to_svg()),
+    ];
+    let (written, errors) = write_each(directory.path(), &files);
+    let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
+    assert_eq!((names, errors.len()), (vec!["compare.csv", "compare.svg"], 1));
+    assert_eq!(std::fs::read_to_string(&written[0]).unwrap(), csv(&study, &table));
 }
 
 /// Tags nest, attributes are quoted, and no bare `<` or `&` stands in text.

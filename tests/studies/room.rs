@@ -5,10 +5,12 @@
 
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use caustix::files::scene_toml::read;
 use caustix::geometry::Shape;
-use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure, run as study};
+use caustix::lab::room::measure::measure;
+use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task};
 use caustix::report::room as report;
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
@@ -135,8 +137,13 @@ fn task(sequence: Sequence, seed: u64, photons: u64) -> Task {
     Task { sequence, seed, photons }
 }
 
+/// A clock that every system has.
+fn clock() -> caustix::Result<Duration> {
+    Ok(SystemTime::now().duration_since(UNIX_EPOCH).unwrap())
+}
+
 fn measured(scene: &Scene, sequence: Sequence, seed: u64, photons: u64) -> Measurement {
-    measure(scene, &task(sequence, seed, photons), &AtomicBool::new(false), &|_| {}).unwrap()
+    measure(scene, &task(sequence, seed, photons), clock, &AtomicBool::new(false), &|_| {}).unwrap()
 }
 
 fn areas(scene: &Scene) -> Vec<f64> {
@@ -304,12 +311,15 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn a_study_in_small() {
     let scene = room("", 4);
-    let options = Options { ladder: vec![500, 2_000, 16_000], seeds: vec![1, 2] };
+    let options = Options::new(vec![500, 2_000, 16_000], vec![1, 2]).unwrap();
     let photons = std::sync::atomic::AtomicU64::new(0);
     let count = |n| {
         photons.fetch_add(n, std::sync::atomic::Ordering::Relaxed);
     };
-    let found = study(&scene, &options, &AtomicBool::new(false), &count).unwrap();
+    let tasks = options.tasks();
+    let of = |task: &Task| measure(&scene, task, clock, &AtomicBool::new(false), &count).unwrap();
+    let mut measurements: Vec<Measurement> = tasks.iter().map(of).collect();
+    let found = RoomStudy::new(&scene, &options, &measurements).unwrap();
     assert_eq!(photons.into_inner(), options.photons());
     assert_eq!(options.photons(), 6 * 18_500);
     assert!(found.is_closed());
@@ -317,7 +327,8 @@ fn a_study_in_small() {
     assert_eq!(found.between().len(), 10);
     for d in found.deviations() {
         assert!(d.value.mean > 0.0 && d.value.mean < 0.3, "{d:?}");
-        assert_eq!(d.value.spread.is_some(), d.sequence == 0);
+        assert_eq!(d.value.spread.is_some(), d.sequences[0] == 0);
+        assert!(d.sequences[0] == d.sequences[1] && d.photons[0] < d.photons[1], "{d:?}");
     }
     let rows = found.rows();
     assert_eq!(rows.len(), SEQUENCES.len() * 3);
@@ -327,8 +338,6 @@ fn a_study_in_small() {
         assert!(row.ratio_equal_n >= 1.0 || row.photons == 500, "{row:?}");
     }
     // Finished measurements in any order make the same study.
-    let mut measurements: Vec<Measurement> =
-        (0..SEQUENCES.len()).flat_map(|s| found.runs(s).iter().flatten().cloned()).collect();
     measurements.reverse();
     assert_eq!(RoomStudy::new(&scene, &options, &measurements).unwrap(), found);
     measurements.pop();
@@ -356,19 +365,23 @@ fn a_study_in_small() {
         assert!(text.contains(name) && markdown.contains(name));
     }
     assert!(text.lines().all(|l| l.chars().count() <= 110), "{text}");
-    let folder = tempfile::tempdir().unwrap();
-    let (written, errors) = report::write_files(&found, "caustix compare room.toml", folder.path());
-    assert!(errors.is_empty() && written.len() == 3);
-    assert_eq!(std::fs::read_to_string(folder.path().join("compare.csv")).unwrap(), csv);
 }
 
 #[test]
 fn what_a_study_needs_is_asked_for() {
+    for (ladder, seeds) in
+        [(vec![], vec![1]), (vec![5], vec![1]), (vec![5, 5], vec![1]), (vec![5, 6], vec![])]
+    {
+        assert!(Options::new(ladder, seeds).is_err());
+    }
+    assert_eq!(Options::paper_ladder(false), [10_000, 100_000, 1_000_000]);
+    assert_eq!(Options::paper_ladder(true)[3..], [10_000_000]);
     let without = sphere("type = \"lambertian\"\nreflectance = 0.5", "");
-    let error =
-        measure(&without, &task(Sequence::Sobol, 0, 10), &AtomicBool::new(false), &|_| {}).unwrap_err();
+    let error = measure(&without, &task(Sequence::Sobol, 0, 10), clock, &AtomicBool::new(false), &|_| {})
+        .unwrap_err();
     assert!(error.to_string().contains("[compare]"), "{error}");
-    let interrupted = measure(&room("", 4), &task(Sequence::Sobol, 0, 10), &AtomicBool::new(true), &|_| {});
+    let interrupted =
+        measure(&room("", 4), &task(Sequence::Sobol, 0, 10), clock, &AtomicBool::new(true), &|_| {});
     assert_eq!(interrupted.unwrap_err().kind(), caustix::error::Kind::Interrupted);
 }
 

@@ -28,14 +28,14 @@ impl<const C: usize> SavedMap<C> {
     /// by their luminance, exactly where no surface coloured them.
     pub fn in_channels<const D: usize>(self) -> SavedMap<D> {
         let Self { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons } = self;
-        let in_channels = |p: &Photon<C>| {
+        let in_channels = |p: Photon<C>| {
             let weight: [f64; C] = p.weight.map(f64::from);
             let weight =
                 if C == D { std::array::from_fn(|c| p.weight[c]) } else { [luminance_of(&weight) as f32; D] };
-            let Photon { cell, direction, primitive, tag, .. } = *p;
+            let Photon { cell, direction, primitive, tag, .. } = p;
             Photon { cell, direction, primitive, tag, weight }
         };
-        let photons = photons.iter().map(in_channels).collect();
+        let photons = photons.into_iter().map(in_channels).collect();
         SavedMap { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons }
     }
 }

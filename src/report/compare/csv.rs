@@ -2,6 +2,7 @@
 
 use crate::lab::study::results::Study;
 use crate::lab::study::table::Table;
+use crate::report::numbers::bare;
 
 /// The columns; names are a contract.
 pub const HEADER: &str = "variant,photons,cells,relative_rms,nrms,relative_l1,nrms_spread,photons_per_s,coordinates,\
@@ -19,25 +20,20 @@ pub fn csv(study: &Study, table: &Table) -> String {
             quoted(&study.variants[row.variant].name),
             row.photons.to_string(),
             study.grids[row.grid].to_string(),
-            number(Some(row.errors.relative_rms)),
-            number(Some(row.errors.nrms)),
-            number(Some(row.errors.relative_l1)),
-            number(row.nrms_spread),
-            number(table.photons_per_cpu_s[row.variant]),
-            number(Some(row.coordinates)),
-            number(rate),
-            number(row.ratio_equal_n),
-            number(row.ratio_equal_time.map(|ratio| ratio.value)),
+            bare(Some(row.errors.relative_rms)),
+            bare(Some(row.errors.nrms)),
+            bare(Some(row.errors.relative_l1)),
+            bare(row.nrms_spread),
+            bare(table.photons_per_cpu_s[row.variant]),
+            bare(Some(row.coordinates)),
+            bare(rate),
+            bare(row.ratio_equal_n),
+            bare(row.ratio_equal_time.map(|ratio| ratio.value)),
         ];
         out.push_str(&fields.join(","));
         out.push('\n');
     }
     out
-}
-
-/// The shortest decimal that reads back as the same number.
-fn number(value: Option<f64>) -> String {
-    value.filter(|v| v.is_finite()).map_or(String::new(), |v| format!("{v}"))
 }
 
 /// RFC 4180: quotes around a field that needs them, doubled inside.

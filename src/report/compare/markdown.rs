@@ -2,10 +2,9 @@
 
 use crate::lab::study::results::Study;
 use crate::lab::study::table::{TARGET_ERROR, Table};
-use crate::plot::scale::three_digits;
-use crate::report::text::grouped;
+use crate::report::numbers::{grouped, list, three_digits};
 
-use super::numbers::{DAGGERS, UNKNOWN, known, list};
+use super::numbers::{DAGGERS, UNKNOWN, known};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};
 
 /// The study as a Markdown document.

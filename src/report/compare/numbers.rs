@@ -2,7 +2,7 @@
 
 use crate::lab::study::fit::{Law, Prediction, Uncertainty};
 use crate::lab::study::table::Row;
-use crate::plot::scale::three_digits;
+use crate::report::numbers::three_digits;
 
 /// Marks behind numbers; the footnotes say what they mean.
 #[derive(Debug, Clone, Copy)]
@@ -65,15 +65,6 @@ pub fn known(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map_or(UNKNOWN.to_owned(), three_digits)
 }
 
-/// A list as people write it: "a, b and c".
-pub fn list(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,8 +96,5 @@ mod tests {
             (known(None), known(Some(f64::NAN)), known(Some(3.0))),
             ("-".into(), "-".into(), "3.00".into())
         );
-        let items = ["a", "b", "c"].map(String::from);
-        assert_eq!(list(&items), "a, b and c");
-        assert_eq!(list(&items[..2]), "a and b");
     }
 }

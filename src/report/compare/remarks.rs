@@ -3,10 +3,9 @@
 use crate::lab::study::fit::Uncertainty;
 use crate::lab::study::results::{BASELINE, Study};
 use crate::lab::study::table::{REFERENCE_MARGIN, Table};
-use crate::plot::scale::three_digits;
-use crate::report::text::grouped;
+use crate::report::numbers::{grouped, list, three_digits};
 
-use super::numbers::{Marks, list};
+use super::numbers::Marks;
 
 /// Below so many times the photons of the largest N, a reference is said to be small.
 const LEAST_FACTOR: f64 = 100.0;

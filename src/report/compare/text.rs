@@ -2,8 +2,7 @@
 
 use crate::lab::study::results::Study;
 use crate::lab::study::table::Table;
-use crate::plot::scale::three_digits;
-use crate::report::text::grouped;
+use crate::report::numbers::{grouped, three_digits};
 
 use super::numbers::{ASCII, UNKNOWN, known};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};

@@ -1,16 +1,20 @@
 //! compare.svg: nRMS against the number of photons, both logarithmic, a panel for every grid.
 
+mod markers;
+
 use std::ops::Range;
 
 use crate::lab::study::results::Study;
 use crate::lab::study::table::{REFERENCE_MARGIN, Row, Table};
-use crate::plot::canvas::{Anchor, Colour, TextStyle};
-use crate::plot::drawing::{Drawing, Pen, Shape};
-use crate::plot::font;
-use crate::plot::scale::{log_ticks, round_125, three_digits};
+use crate::report::colour::Colour;
+use crate::report::colour::scale::{log_ticks, round_125};
+use crate::report::compare::remarks::{cells, seeds};
+use crate::report::numbers::three_digits;
 
-use super::markers::{colour, marker};
-use super::remarks::{cells, seeds};
+use super::canvas::{Anchor, TextStyle};
+use super::drawing::{Drawing, Pen, Shape, ink, polyline, text};
+use super::font;
+use markers::{colour, marker};
 
 const MARGIN: f64 = 22.0;
 /// Room for the numbers at the left of a row of panels.
@@ -50,7 +54,7 @@ pub fn drawing(study: &Study, table: &Table) -> Drawing {
     let mut y = MARGIN + TITLE_SIZE;
     let title = format!("Error of algorithm variants: {}", study.scene_name);
     let style = TextStyle::new(TITLE_SIZE, Colour::grey(20)).weighing(1.25);
-    shapes.push(text([MARGIN, y], &fitting(&title, TITLE_SIZE, width - 2.0 * MARGIN), style));
+    shapes.push(text([MARGIN, y], &font::shortened(&title, TITLE_SIZE, width - 2.0 * MARGIN, ".."), style));
     y += 10.0;
     legend(&mut shapes, study, width, &mut y);
     let axes = Axes::of(study, table);
@@ -73,7 +77,7 @@ pub fn drawing(study: &Study, table: &Table) -> Drawing {
         panel.draw(&mut shapes, study, table);
     }
     y += PANEL_HEIGHT + 4.0 * LINE_HEIGHT + 16.0;
-    for line in lines(&caption(study, table), TICK_SIZE, width - 2.0 * MARGIN) {
+    for line in font::wrapped(&caption(study, table), TICK_SIZE, width - 2.0 * MARGIN) {
         shapes.push(text([MARGIN, y], &line, TextStyle::new(TICK_SIZE, ink())));
         y += LINE_HEIGHT - 2.0;
     }
@@ -134,8 +138,8 @@ impl Panel<'_> {
                 .filter(|r| r.errors.nrms > 0.0)
         };
         for v in (0..study.variants.len()).rev() {
-            let points = of(v).map(|r| [self.x(r.photons as f64), self.y(r.errors.nrms)]).collect();
-            shapes.push(Shape::Polyline { points, pen: pen(2.0, colour(v)) });
+            let points = of(v).map(|r| [self.x(r.photons as f64), self.y(r.errors.nrms)]);
+            shapes.push(polyline(points.collect::<Vec<_>>(), Pen::solid(2.0, colour(v))));
         }
         for v in (0..study.variants.len()).rev() {
             for row in of(v) {
@@ -153,11 +157,10 @@ impl Panel<'_> {
         for tick in log_ticks(percent.start, percent.end) {
             let y = self.y(0.01 * tick.value);
             let decade = is_power_of_ten(tick.value);
-            let points = vec![[left, y], [left + width, y]];
-            shapes.push(Shape::Polyline {
-                points,
-                pen: pen(1.0, Colour::grey(if decade { 196 } else { 226 })),
-            });
+            shapes.push(polyline(
+                [[left, y], [left + width, y]],
+                Pen::solid(1.0, Colour::grey(if decade { 196 } else { 226 })),
+            ));
             if self.labelled {
                 let label = format!("{} %", tick.label);
                 shapes.push(text([left - 7.0, y + 4.5], &label, style.anchored(Anchor::End)));
@@ -165,14 +168,15 @@ impl Panel<'_> {
         }
         for photons in between_powers(&self.axes.photons) {
             let x = self.x(photons);
-            let points = vec![[x, top + height - 5.0], [x, top + height]];
-            shapes.push(Shape::Polyline { points, pen: pen(1.0, Colour::grey(130)) });
+            shapes.push(polyline(
+                [[x, top + height - 5.0], [x, top + height]],
+                Pen::solid(1.0, Colour::grey(130)),
+            ));
         }
         let mut free_from = f64::NEG_INFINITY;
         for (photons, label) in photon_ticks(&self.axes.photons) {
             let x = self.x(photons);
-            let points = vec![[x, top], [x, top + height]];
-            shapes.push(Shape::Polyline { points, pen: pen(1.0, Colour::grey(212)) });
+            shapes.push(polyline([[x, top], [x, top + height]], Pen::solid(1.0, Colour::grey(212))));
             let half = 0.5 * font::width_px(&label, TICK_SIZE, true);
             if x - half > free_from {
                 shapes.push(text([x, top + height + 18.0], &label, style.anchored(Anchor::Middle)));
@@ -181,14 +185,9 @@ impl Panel<'_> {
         }
         let title_at = [left + 0.5 * width, top + height + 18.0 + LINE_HEIGHT];
         shapes.push(text(title_at, "photons N", style.anchored(Anchor::Middle)));
-        let frame = vec![
-            [left, top],
-            [left + width, top],
-            [left + width, top + height],
-            [left, top + height],
-            [left, top],
-        ];
-        shapes.push(Shape::Polyline { points: frame, pen: pen(1.0, Colour::grey(130)) });
+        let (right, foot) = (left + width, top + height);
+        let frame = [[left, top], [right, top], [right, foot], [left, foot], [left, top]];
+        shapes.push(polyline(frame, Pen::solid(1.0, Colour::grey(130))));
     }
 
     /// Two slopes from one point in the upper right corner, which errors that fall leave free.
@@ -203,9 +202,9 @@ impl Panel<'_> {
         for (rate, name) in GUIDES {
             let (photons, error) = (start[0] * libm::exp10(reach), start[1] * libm::exp10(rate * reach));
             let end = [self.x(photons), self.y(error)];
-            let points = vec![[self.x(start[0]), self.y(start[1])], end];
             let grey = Colour::grey(110);
-            shapes.push(Shape::Polyline { points, pen: Pen { dash_px: Some([1.5, 4.0]), ..pen(1.6, grey) } });
+            let dotted = Pen { dash_px: Some([1.5, 4.0]), ..Pen::solid(1.6, grey) };
+            shapes.push(polyline([[self.x(start[0]), self.y(start[1])], end], dotted));
             shapes.push(text([end[0] + 5.0, end[1] + 4.5], name, TextStyle::new(TICK_SIZE, grey)));
         }
     }
@@ -221,8 +220,10 @@ impl Panel<'_> {
         let shown = own >= self.axes.error.start;
         let y = if shown { self.y(own) } else { top + height };
         if shown {
-            let points = vec![[left, y], [left + width, y]];
-            shapes.push(Shape::Polyline { points, pen: Pen { dash_px: Some([7.0, 5.0]), ..pen(1.5, grey) } });
+            shapes.push(polyline(
+                [[left, y], [left + width, y]],
+                Pen { dash_px: Some([7.0, 5.0]), ..Pen::solid(1.5, grey) },
+            ));
         }
         let below = shown && y + 19.0 < top + height;
         let (label, baseline) = if below {
@@ -238,10 +239,10 @@ impl Panel<'_> {
         let Some(spread) = row.nrms_spread else { return };
         let x = self.x(row.photons as f64);
         let ends = [self.y(row.errors.nrms - spread), self.y(row.errors.nrms + spread)];
-        let pen = pen(1.4, colour(row.variant));
-        shapes.push(Shape::Polyline { points: vec![[x, ends[0]], [x, ends[1]]], pen });
+        let pen = Pen::solid(1.4, colour(row.variant));
+        shapes.push(polyline([[x, ends[0]], [x, ends[1]]], pen));
         for y in ends {
-            shapes.push(Shape::Polyline { points: vec![[x - 4.0, y], [x + 4.0, y]], pen });
+            shapes.push(polyline([[x - 4.0, y], [x + 4.0, y]], pen));
         }
     }
 }
@@ -252,14 +253,13 @@ fn legend(shapes: &mut Vec<Shape>, study: &Study, width: f64, y: &mut f64) {
     let mut x = MARGIN;
     *y += LINE_HEIGHT;
     for (v, variant) in study.variants.iter().enumerate() {
-        let name = fitting(&variant.name, TEXT_SIZE, width - 2.0 * MARGIN - sample - 8.0);
+        let name = font::shortened(&variant.name, TEXT_SIZE, width - 2.0 * MARGIN - sample - 8.0, "..");
         let entry = sample + 8.0 + font::width_px(&name, TEXT_SIZE, true);
         if x > MARGIN && x + entry > width - MARGIN {
             x = MARGIN;
             *y += LINE_HEIGHT;
         }
-        let line = vec![[x, *y - 5.0], [x + sample, *y - 5.0]];
-        shapes.push(Shape::Polyline { points: line, pen: pen(2.0, colour(v)) });
+        shapes.push(polyline([[x, *y - 5.0], [x + sample, *y - 5.0]], Pen::solid(2.0, colour(v))));
         shapes.extend(marker(v, [x + 0.5 * sample, *y - 5.0], false));
         shapes.push(text([x + sample + 8.0, *y], &name, TextStyle::new(TEXT_SIZE, ink())));
         x += entry + 26.0;
@@ -319,43 +319,4 @@ fn short(value: f64) -> String {
 /// Place on a logarithmic range, 0 at its start and 1 at its end.
 fn share(range: &Range<f64>, value: f64) -> f64 {
     libm::log(value / range.start) / libm::log(range.end / range.start)
-}
-
-fn pen(width_px: f64, colour: Colour) -> Pen {
-    Pen { width_px, colour, dash_px: None }
-}
-
-fn text(at: [f64; 2], text: &str, style: TextStyle) -> Shape {
-    Shape::Text { at, text: text.to_owned(), style }
-}
-
-fn ink() -> Colour {
-    Colour::grey(50)
-}
-
-/// The text, or as much of it as fits and two full stops.
-fn fitting(text: &str, size_px: f64, room_px: f64) -> String {
-    if font::width_px(text, size_px, true) <= room_px {
-        return text.to_owned();
-    }
-    let mut kept: String = text.chars().take(400).collect();
-    while !kept.is_empty() && font::width_px(&format!("{kept}.."), size_px, true) > room_px {
-        kept.pop();
-    }
-    kept + ".."
-}
-
-/// Text broken at spaces into lines that fit.
-fn lines(text: &str, size_px: f64, room_px: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if font::width_px(&format!("{line} {word}"), size_px, true) <= room_px => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }

@@ -4,19 +4,23 @@
 use std::path::Path;
 
 use crate::error::Result;
-use crate::plot::canvas::{Anchor, Canvas, Colour, TextStyle};
-use crate::plot::colour_map;
-use crate::plot::colour_map::colour;
-use crate::plot::font;
-use crate::plot::isolux;
-use crate::plot::isolux::{Isolux, LABEL_SIZE_PX};
-use crate::plot::resample::area_average;
-use crate::plot::scale::{Axis, Scale, Tick, linear_ticks, three_digits};
+use crate::report::colour::Colour;
+use crate::report::colour::map::{colour, lightness, value_colour};
+use crate::report::colour::scale::{Axis, Tick, linear_ticks};
+use crate::report::numbers::three_digits;
+
+use super::canvas::{Anchor, Canvas, TextStyle};
+use super::drawing::ink;
+use super::font;
+use super::isolux::{Isolux, LABEL_SIZE_PX, isolux};
+use super::resample::area_average;
 
 /// Maps below this on their longer side are magnified past it.
 const MAGNIFY_BELOW: usize = 700;
 /// Maps above this on their longer side are averaged down to it.
 const SHRINK_ABOVE: usize = 1200;
+/// Cells along a side over which a typical value is taken.
+const TYPICAL_CELLS: usize = 128;
 /// However narrow a map, this much of it can be seen.
 const NARROWEST: usize = 48;
 /// Least height of the colour scale.
@@ -48,8 +52,6 @@ pub struct FalseColour<'a> {
     pub values: &'a [f64],
     /// Sides along u and v in metres; without it the axes run from 0 to 1.
     pub size_m: Option<[f64; 2]>,
-    /// The scale of the colours.
-    pub scale: Scale,
     /// Whether to draw isolux lines.
     pub isolux: bool,
     /// Lines of text under the picture.
@@ -103,17 +105,6 @@ impl FalseColour<'_> {
         self.render().write_png(path)
     }
 
-    /// Where the map and the colour scale lie in the picture: x, y, width, height in pixels of each.
-    pub fn areas(&self) -> [[usize; 4]; 2] {
-        let (values, cells) = match self.checked() {
-            Some(cells) => (self.values, cells),
-            None => (&[f64::NAN][..], [1, 1]),
-        };
-        let labels = bar_labels(&Axis::fit_map(values, cells, self.scale));
-        let layout = self.layout(display_size(cells, self.size_m), &labels);
-        [layout.map, layout.bar]
-    }
-
     fn checked(&self) -> Option<[usize; 2]> {
         let fits = self.width > 0
             && self.height > 0
@@ -122,13 +113,18 @@ impl FalseColour<'_> {
     }
 
     fn render_cells(&self, values: &[f64], cells: [usize; 2]) -> Canvas {
-        let axis = Axis::fit_map(values, cells, self.scale);
+        let axis = fit_map(values, cells);
         let display = display_size(cells, self.size_m);
-        let lines = if self.isolux { isolux::isolux(values, cells, display, &axis) } else { no_lines() };
+        let lines = if self.isolux { isolux(values, cells, display, &axis) } else { Isolux::default() };
         let labels = bar_labels(&axis);
         let text = self.footer_text(values, &lines);
         let mut layout = self.layout(display, &labels);
-        let footer = wrapped(&text, (layout.size[0] - 2 * MARGIN) as f64);
+        let room = (layout.size[0] - 2 * MARGIN) as f64;
+        let footer: Vec<String> = text
+            .iter()
+            .flat_map(|line| font::wrapped(line, TEXT_SIZE, room))
+            .map(|line| font::shortened(&line, TEXT_SIZE, room, "..."))
+            .collect();
         layout.size[1] = layout.footer_y + footer.len() * LINE_HEIGHT + MARGIN - 8;
 
         let mut canvas = Canvas::new(layout.size[0], layout.size[1], Colour::WHITE);
@@ -173,7 +169,7 @@ impl FalseColour<'_> {
         while size > 13.0 && font::width_px(self.title, size, true) > room {
             size -= 1.0;
         }
-        let title = shortened(self.title, size, room);
+        let title = font::shortened(self.title, size, room, "...");
         let style = TextStyle::new(size, Colour::grey(20)).weighing(1.25);
         canvas.text([MARGIN as f64, (MARGIN + 16) as f64], &title, &style);
     }
@@ -231,6 +227,16 @@ impl FalseColour<'_> {
     }
 }
 
+/// The scale of a map. Where photons are few, most cells hold none or one of them; what is typical is therefore taken from
+/// averages over larger areas.
+fn fit_map(values: &[f64], cells: [usize; 2]) -> Axis {
+    let coarse = cells.map(|n| n.min(TYPICAL_CELLS));
+    if coarse == cells {
+        return Axis::fit(values);
+    }
+    Axis::fit_with_typical(values, &area_average(values, cells, coarse))
+}
+
 /// Minimum, mean, maximum and uniformity of the cells that have a value.
 fn statistics_line(values: &[f64], quantity: Quantity) -> String {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
@@ -252,7 +258,7 @@ fn statistics_line(values: &[f64], quantity: Quantity) -> String {
 }
 
 /// Pixels on which a map of so many cells is shown; cells become squares, or follow `size_m`.
-pub fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
+fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
     let longest = cells[0].max(cells[1]).max(1);
     let factor = MAGNIFY_BELOW.div_ceil(longest).min(SHRINK_ABOVE / longest).max(1);
     let side = (longest * factor).min(SHRINK_ABOVE);
@@ -272,19 +278,6 @@ pub fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
 
 fn valid_size(size_m: Option<[f64; 2]>) -> Option<[f64; 2]> {
     size_m.filter(|size| size.iter().all(|s| s.is_finite() && *s > 0.0) && (size[0] / size[1]).is_normal())
-}
-
-fn no_lines() -> Isolux {
-    Isolux { lines: Vec::new(), smoothing: 0.0 }
-}
-
-fn ink() -> Colour {
-    Colour::grey(50)
-}
-
-/// The colour of a value on a scale.
-pub fn value_colour(value: f64, axis: &Axis) -> Colour {
-    if value.is_finite() { colour(axis.place(value)) } else { colour_map::no_value() }
 }
 
 fn draw_map(canvas: &mut Canvas, values: &[f64], cells: [usize; 2], layout: &Layout, axis: &Axis) {
@@ -323,7 +316,7 @@ fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux
 
 /// White on dark colours, black on light ones.
 fn line_colour(place: f64) -> Colour {
-    if colour_map::lightness(place) < 0.62 { Colour::WHITE } else { Colour::BLACK }
+    if lightness(place) < 0.62 { Colour::WHITE } else { Colour::BLACK }
 }
 
 /// Place from foot (0) to top (1) and text of the marks of the colour scale, foot first.
@@ -380,39 +373,5 @@ fn widest<'a>(labels: impl Iterator<Item = &'a str>) -> usize {
     labels.map(|l| font::width_px(l, TICK_SIZE, true).ceil() as usize).max().unwrap_or(0)
 }
 
-/// The text, or as much of it as fits the room with "..." at its end.
-fn shortened(text: &str, size_px: f64, room_px: f64) -> String {
-    if font::width_px(text, size_px, true) <= room_px {
-        return text.to_owned();
-    }
-    let mut short = String::new();
-    for c in text.chars() {
-        if font::width_px(&format!("{short}{c}..."), size_px, true) > room_px {
-            break;
-        }
-        short.push(c);
-    }
-    short + "..."
-}
-
-/// Lines broken between words so that they fit the room.
-fn wrapped(lines: &[String], room_px: f64) -> Vec<String> {
-    let mut result = Vec::new();
-    for line in lines {
-        if font::width_px(line, TEXT_SIZE, true) <= room_px {
-            result.push(line.clone());
-            continue;
-        }
-        let mut current = String::new();
-        for word in line.split_whitespace() {
-            let longer = if current.is_empty() { word.to_owned() } else { format!("{current} {word}") };
-            if font::width_px(&longer, TEXT_SIZE, true) <= room_px || current.is_empty() {
-                current = longer;
-            } else {
-                result.push(std::mem::replace(&mut current, word.to_owned()));
-            }
-        }
-        result.push(current);
-    }
-    result.iter().map(|line| shortened(line, TEXT_SIZE, room_px)).collect()
-}
+#[cfg(test)]
+mod tests;

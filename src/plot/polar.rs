@@ -5,13 +5,14 @@
 //! the left; C0-C180 solid, C90-C270 dashed. The upper half is left out when nothing is emitted there.
 
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 
-use crate::error::Result;
-use crate::plot::canvas::{Anchor, Colour, TextStyle};
-use crate::plot::drawing::{Drawing, Pen, Shape};
-use crate::plot::font;
-use crate::plot::scale::{Tick, linear_ticks};
+use super::canvas::{Anchor, TextStyle};
+use super::drawing::{Drawing, Shape, ink, polyline, text};
+use super::font;
+use super::page::{
+    MARGIN, RADIUS, RAY_STEP_DEG, TICK_SIZE, WIDTH, curve_pen, draw_ring_label, draw_title, finished,
+    grid_pens, round_rings,
+};
 
 /// Luminous intensity in one plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,17 +37,6 @@ pub struct PolarPlot {
     pub footer: Vec<String>,
 }
 
-pub(super) const WIDTH: usize = 640;
-pub(super) const RADIUS: f64 = 236.0;
-pub(super) const MARGIN: f64 = 24.0;
-pub(super) const TITLE_SIZE: f64 = 18.0;
-pub(super) const TEXT_SIZE: f64 = 13.0;
-pub(super) const TICK_SIZE: f64 = 12.0;
-pub(super) const LINE_HEIGHT: f64 = 20.0;
-pub(super) const RAY_STEP_DEG: usize = 15;
-/// Most rings there are.
-pub(super) const RINGS: usize = 7;
-
 /// The measures of one diagram.
 struct Frame {
     centre: [f64; 2],
@@ -54,91 +44,32 @@ struct Frame {
     full: bool,
     /// Intensity at the outer ring, candela.
     outer_cd: f64,
-    rings: Vec<Tick>,
-}
-
-/// Width between the margins.
-const ROOM: f64 = WIDTH as f64 - 2.0 * MARGIN;
-
-/// The title of a polar diagram.
-pub(super) fn draw_title(shapes: &mut Vec<Shape>, title: &str) {
-    let style = TextStyle::new(fitting(title, TITLE_SIZE, ROOM), Colour::grey(20)).weighing(1.25);
-    shapes.push(text([MARGIN, MARGIN + 16.0], title, style));
-}
-
-/// The lines under a polar diagram, from y down.
-pub(super) fn draw_footer(shapes: &mut Vec<Shape>, y: &mut f64, lines: &[String]) {
-    for line in lines {
-        let style = TextStyle::new(TEXT_SIZE, ink());
-        shapes.push(text([MARGIN, *y], line, TextStyle { size_px: fitting(line, TEXT_SIZE, ROOM), ..style }));
-        *y += LINE_HEIGHT;
-    }
+    /// Intensity and label of each ring, from the inside.
+    rings: Vec<(f64, String)>,
 }
 
 impl PolarPlot {
-    /// The diagram as an SVG document.
-    pub fn to_svg(&self) -> String {
-        self.drawing().to_svg()
-    }
-
-    /// The diagram as a PNG file.
-    ///
-    /// # Errors
-    /// [`crate::error::Kind::Io`] with the path.
-    pub fn to_png(&self, path: impl AsRef<Path>) -> Result<()> {
-        self.drawing().to_canvas().write_png(path)
-    }
-
-    /// The diagram as shapes; both files are renderings of it.
+    /// The diagram as shapes.
     pub fn drawing(&self) -> Drawing {
         let frame = self.frame();
         let mut shapes = Vec::new();
         draw_title(&mut shapes, &self.title);
         draw_grid(&mut shapes, &frame);
-        for (i, curve) in self.curves.iter().enumerate() {
-            for points in chains(curve, &frame) {
-                shapes.push(Shape::Polyline { points, pen: curve_pen(i, curve.dashed) });
-            }
+        let pens = self.curves.iter().enumerate().map(|(i, curve)| curve_pen(i, curve.dashed));
+        for (curve, pen) in self.curves.iter().zip(pens.clone()) {
+            shapes.extend(chains(curve, &frame).into_iter().map(|points| polyline(points, pen)));
         }
-        let mut y = frame.centre[1] + RADIUS + 52.0;
-        self.draw_legend(&mut shapes, &mut y);
-        draw_footer(&mut shapes, &mut y, &self.footer);
-        Drawing { width: WIDTH, height: (y + MARGIN - LINE_HEIGHT + 4.0) as usize, shapes }
+        let legend = self.curves.iter().map(|curve| curve.label.clone()).zip(pens);
+        finished(shapes, frame.centre[1] + RADIUS, legend, &self.footer)
     }
 
     fn frame(&self) -> Frame {
         let finite =
             || self.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
-        let max = finite().map(|p| p.1).fold(0.0, f64::max);
         let full = finite().any(|p| p.0.abs() > 90.0 && p.1 > 0.0);
-        // Subnormal candela have no round numbers.
-        let max = if max > f64::MIN_POSITIVE / f64::EPSILON { max } else { 1.0 };
-        let step = linear_ticks(0.0, max, RINGS).get(1).map_or(max, |tick| tick.value);
-        let rings: Vec<Tick> = linear_ticks(0.0, (max / step).ceil() * step, RINGS).split_off(1);
-        let outer_cd = rings.last().map_or(max, |tick| tick.value).max(max);
+        let (rings, outer_cd) = round_rings(finite().map(|p| p.1).fold(0.0, f64::max));
         let above = if full { RADIUS + 30.0 } else { 28.0 };
         Frame { centre: [0.5 * WIDTH as f64, MARGIN + 30.0 + above], full, outer_cd, rings }
-    }
-
-    /// A line of each curve's kind and its name, as many in a row as fit.
-    fn draw_legend(&self, shapes: &mut Vec<Shape>, y: &mut f64) {
-        let style = TextStyle::new(TEXT_SIZE, ink());
-        let sample = 34.0;
-        let mut x = MARGIN;
-        for (i, curve) in self.curves.iter().enumerate() {
-            let width = sample + 8.0 + font::width_px(&curve.label, TEXT_SIZE, true);
-            if x > MARGIN && x + width > WIDTH as f64 - MARGIN {
-                x = MARGIN;
-                *y += LINE_HEIGHT;
-            }
-            let line = vec![[x, *y - 4.5], [x + sample, *y - 4.5]];
-            shapes.push(Shape::Polyline { points: line, pen: curve_pen(i, curve.dashed) });
-            shapes.push(text([x + sample + 8.0, *y], &curve.label, style));
-            x += width + 28.0;
-        }
-        if !self.curves.is_empty() {
-            *y += LINE_HEIGHT + 4.0;
-        }
     }
 }
 
@@ -175,14 +106,12 @@ fn chains(curve: &Curve, frame: &Frame) -> Vec<Vec<[f64; 2]>> {
 }
 
 fn draw_grid(shapes: &mut Vec<Shape>, frame: &Frame) {
-    let [cx, cy] = frame.centre;
-    let fine = Pen { width_px: 1.0, colour: Colour::grey(216), dash_px: None };
-    let strong = Pen { colour: Colour::grey(140), ..fine };
+    let [fine, strong] = grid_pens();
     // Clockwise on the screen from +x: the lower half is 0 to pi.
     let angles = if frame.full { [0.0, TAU] } else { [0.0, PI] };
-    for ring in &frame.rings {
-        let radius = ring.value / frame.outer_cd * RADIUS;
-        let pen = if ring.value == frame.outer_cd { strong } else { fine };
+    for (value, _) in &frame.rings {
+        let radius = value / frame.outer_cd * RADIUS;
+        let pen = if *value == frame.outer_cd { strong } else { fine };
         shapes.push(Shape::Arc { centre: frame.centre, radius, angles, pen });
     }
     let last = if frame.full { 180 } else { 90 };
@@ -190,14 +119,11 @@ fn draw_grid(shapes: &mut Vec<Shape>, frame: &Frame) {
         let pen = if angle % 90 == 0 { strong } else { fine };
         for side in [1.0, -1.0] {
             if side > 0.0 || angle % 180 != 0 {
-                let end = frame.place(side * angle as f64, frame.outer_cd);
                 // Fine rays would fill the centre.
                 let start = if angle % 30 == 0 { 0.0 } else { 0.2 * frame.outer_cd };
-                shapes.push(Shape::Polyline {
-                    points: vec![frame.place(side * angle as f64, start), end],
-                    pen,
-                });
-                shapes.push(angle_label([cx, cy], side, angle));
+                let ends = [start, frame.outer_cd].map(|candela| frame.place(side * angle as f64, candela));
+                shapes.push(polyline(ends, pen));
+                shapes.push(angle_label(frame.centre, side, angle));
             }
         }
     }
@@ -217,45 +143,19 @@ fn angle_label([cx, cy]: [f64; 2], side: f64, angle_deg: usize) -> Shape {
 
 /// Candela along the horizontal to the right, where most luminaires emit least; above the line, inside their ring.
 fn draw_ring_labels(shapes: &mut Vec<Shape>, frame: &Frame) {
-    let style = TextStyle::new(TICK_SIZE, Colour::grey(90)).anchored(Anchor::End);
-    let baseline = frame.centre[1] - 5.0;
     let mut free_until = f64::INFINITY;
-    for (i, ring) in frame.rings.iter().enumerate().rev() {
+    for (i, (value, label)) in frame.rings.iter().enumerate().rev() {
         let unit = if i + 1 == frame.rings.len() { " cd" } else { "" };
-        let label = format!("{}{unit}", ring.label);
+        let label = format!("{label}{unit}");
         let width = font::width_px(&label, TICK_SIZE, true);
-        let x = frame.centre[0] + ring.value / frame.outer_cd * RADIUS - 4.0;
+        let x = frame.centre[0] + value / frame.outer_cd * RADIUS - 4.0;
         // Long numbers on narrow rings: the outer one says more.
         if x > free_until || x - width < frame.centre[0] {
             continue;
         }
         free_until = x - width - 10.0;
-        if frame.full {
-            let area = [x - width - 1.0, baseline - 10.0, width + 2.0, 12.0];
-            shapes.push(Shape::Rect { area, colour: Colour::WHITE });
-        }
-        shapes.push(text([x, baseline], &label, style));
+        draw_ring_label(shapes, [x, frame.centre[1] - 5.0], &label, Anchor::End, frame.full);
     }
-}
-
-pub(super) fn curve_pen(index: usize, dashed: bool) -> Pen {
-    let colours = [(0x14, 0x5d, 0xa8), (0xd2, 0x3b, 0x2a), (0x2e, 0x8b, 0x57), (0x8a, 0x4f, 0xa3)];
-    let (r, g, b) = colours[index % colours.len()];
-    Pen { width_px: 2.2, colour: Colour::srgb(r, g, b), dash_px: dashed.then_some([8.0, 5.5]) }
-}
-
-pub(super) fn text(at: [f64; 2], text: &str, style: TextStyle) -> Shape {
-    Shape::Text { at, text: text.to_owned(), style }
-}
-
-/// The wanted type size, or the smaller one at which the text fits, not below 8.
-pub(super) fn fitting(text: &str, size_px: f64, room_px: f64) -> f64 {
-    let width = font::width_px(text, size_px, true);
-    if width > room_px { (size_px * room_px / width).floor().max(8.0) } else { size_px }
-}
-
-pub(super) fn ink() -> Colour {
-    Colour::grey(50)
 }
 
 #[cfg(test)]
@@ -345,7 +245,7 @@ mod tests {
             drawing.to_canvas();
         }
         let nothing = PolarPlot { title: String::new(), curves: vec![], footer: vec![] };
-        assert!(nothing.to_svg().ends_with("</svg>\n"));
+        assert!(nothing.drawing().to_svg().ends_with("</svg>\n"));
     }
 
     #[test]

@@ -1,29 +1,31 @@
-//! `caustix compare`: the error of every algorithm variant against a reference.
+//! Algorithm variants against a reference.
 
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use clap::Args;
-
+use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
+use crate::cli::render::{make_directory, thread_pool};
+use crate::cli::{Done, count, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::parts::{Found, Parts, from_bytes, to_bytes};
-use crate::lab::study::REVISION;
+use crate::files::atomic::write_each;
+use crate::files::parts::{Parts, from_bytes, to_bytes};
 use crate::lab::study::account::Events;
 use crate::lab::study::cells::Grids;
 use crate::lab::study::reference::{
-    MOST_REFERENCE_PHOTONS, REPLICATES, Reference, ReferencePlan, emission_map, trace_replicate,
+    MOST_REFERENCE_PHOTONS, REPLICATES, Reference, ReferencePlan, SEQUENCE, emission_map, trace_replicate,
 };
 use crate::lab::study::results;
 use crate::lab::study::results::{Run, Study, VariantResult};
-use crate::lab::study::runs::{LADDER_OCTAVES, Measure, ladder};
+use crate::lab::study::runs::{LADDER_OCTAVES, ladder};
 use crate::lab::study::table::Table;
-use crate::report::compare::{text::text, write_files};
+use crate::plot::compare::drawing;
+use crate::report::compare::csv::csv;
+use crate::report::compare::markdown::markdown;
+use crate::report::compare::text::text;
 use crate::run::{Algorithm, MAX_PHOTONS, Variant};
 use crate::scene::Scene;
 
-use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::render::{MAX_THREADS, load, make_directory, thread_pool};
-use super::{count, exit, fail, print, say, warn, whole};
+use super::parts::{command_line, found, found_json, scene_key, store_json};
+use super::{CompareArgs, seeds};
 
 /// Photons of each run where none is named.
 const DEFAULT_PHOTONS: u64 = 1 << 20;
@@ -42,90 +44,32 @@ const FULL: [&str; 7] = [
     "qmc-inverse-reuse:independent",
 ];
 
-/// Most point sets of a variant.
-const MOST_SEEDS: u32 = 1024;
-
-/// Arguments of `caustix compare`.
-#[derive(Debug, Args)]
-pub struct CompareArgs {
-    /// Scene file; the built-in scene if absent.
-    pub scene: Option<PathBuf>,
-    /// Directory for the results and, in `parts/`, for what is finished: the same command goes on from there.
-    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
-    pub output: PathBuf,
-    /// Photons of the largest run of each variant and seed [default: 2^20].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub photons: Option<String>,
-    /// Variants, like mc,qmc,qmc:table,qmc-inverse-reuse:halton [default: the paper's four].
-    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
-    pub variants: Vec<String>,
-    /// Photons of the reference [default: 100 times N].
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
-    pub reference_photons: Option<String>,
-    /// Cells along each side of the grids that errors are measured on [default: 48,128,256].
-    #[arg(long, value_name = "K,K,...", value_delimiter = ',')]
-    pub cells: Vec<u32>,
-    /// More variants: every form of rejection, other solvers and sequences. In a scene with `[compare]`: 10^7 photons.
-    #[arg(long)]
-    pub full: bool,
-    /// The least number of photons of which errors are taken; from there powers of two up to N [default: N / 256].
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    pub from: Option<String>,
-    /// Point sets of each variant.
-    #[arg(long, value_name = "S", default_value = "4", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MOST_SEEDS as u64 }>)]
-    pub seeds: u32,
-    /// The first seed; the others follow it.
-    #[arg(long, value_name = "K", default_value = "1", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
-    pub seed: u64,
-    /// Threads [default: all cores]. The errors do not depend on it.
-    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_THREADS as u64 }>)]
-    pub threads: Option<u32>,
-    /// No progress bar and no table.
-    #[arg(long)]
-    pub quiet: bool,
-}
-
-/// Runs the subcommand; the exit code.
-pub fn run(args: &CompareArgs) -> u8 {
-    match compare(args) {
-        Ok(code) => code,
-        Err(errors) => fail(&errors),
-    }
-}
-
-fn compare(args: &CompareArgs) -> std::result::Result<u8, Vec<Diagnostic>> {
-    let one = |e: Diagnostic| vec![e];
-    let (scene, _) = load(args.scene.as_deref())?;
-    warn(&scene.warnings);
-    if scene.compared_reflections.is_some() {
-        return super::compare_room::compare(args, &scene);
-    }
-    let asked = Asked::new(args, &scene).map_err(one)?;
-    make_directory(&args.output).map_err(one)?;
+/// Makes the study as far as it gets; the exit code.
+pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
+    let asked = Asked::new(args, scene)?;
+    make_directory(&args.output)?;
     catch_interrupts();
-    let pool = thread_pool(args.threads).map_err(one)?;
+    let pool = thread_pool(args.threads)?;
     let progress = Progress::new(args.quiet, asked.work());
-    let job = Job { scene: &scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
-    let study = pool.install(|| job.study(args)).map_err(one)?;
+    let job = Job { scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
+    let study = pool.install(|| job.study(args))?;
     progress.finish();
-    finish(args, &job, study.as_ref())
-}
-
-/// Writes what there is and says how it stands.
-fn finish(
-    args: &CompareArgs,
-    job: &Job<'_>,
-    study: Option<&Study>,
-) -> std::result::Result<u8, Vec<Diagnostic>> {
-    if let Some(study) = study {
+    if let Some(study) = &study {
         let table = Table::new(study);
-        let files = write_files(study, &table, &args.output);
+        let (_, errors) = write_each(
+            &args.output,
+            &[
+                ("compare.csv", csv(study, &table)),
+                ("compare.md", markdown(study, &table)),
+                ("compare.svg", drawing(study, &table).to_svg()),
+            ],
+        );
         if !args.quiet {
             print(&text(study, &table));
             print(&format!("written to {}\n", args.output.display()));
         }
-        if !files.errors.is_empty() {
-            return Err(files.errors);
+        if !errors.is_empty() {
+            return Err(errors.into());
         }
     }
     if !INTERRUPTED.load(Ordering::Relaxed) {
@@ -141,8 +85,8 @@ fn finish(
 }
 
 /// What is asked for, made definite.
-struct Asked {
-    grids: Grids,
+struct Asked<'s> {
+    grids: Grids<'s>,
     algorithms: Vec<Algorithm>,
     seeds: Vec<u64>,
     photons: u64,
@@ -150,8 +94,8 @@ struct Asked {
     reference: ReferencePlan,
 }
 
-impl Asked {
-    fn new(args: &CompareArgs, scene: &Scene) -> Result<Self> {
+impl<'s> Asked<'s> {
+    fn new(args: &CompareArgs, scene: &'s Scene) -> Result<Self> {
         let cells = if args.cells.is_empty() { &DEFAULT_CELLS[..] } else { &args.cells };
         let mut cells = cells.to_vec();
         let mut seen = Vec::new();
@@ -199,15 +143,6 @@ impl Asked {
     }
 }
 
-/// The seeds asked for.
-pub(super) fn seeds(args: &CompareArgs) -> Result<Vec<u64>> {
-    if !(1..=MOST_SEEDS).contains(&args.seeds) {
-        let found = format!("--seeds {}", args.seeds);
-        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MOST_SEEDS} seeds")));
-    }
-    Ok((0..u64::from(args.seeds)).map(|k| args.seed.wrapping_add(k)).collect())
-}
-
 fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
     let paper = Variant::ALL.map(Variant::name);
     let names: Vec<&str> = match (args.variants.is_empty(), args.full) {
@@ -233,7 +168,7 @@ fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
 /// A study under way.
 struct Job<'a> {
     scene: &'a Scene,
-    asked: Asked,
+    asked: Asked<'a>,
     parts: Parts,
     progress: &'a Progress,
 }
@@ -266,13 +201,13 @@ impl Job<'_> {
             ladder: asked.ladder.clone(),
             seeds: asked.seeds.clone(),
             threads: rayon::current_num_threads(),
-            reference: results::Reference {
+            reference: results::ReferenceUsed {
                 photons: asked.reference.photons(),
                 replicates: REPLICATES,
-                sequence: asked.reference.sequence.name().into(),
+                sequence: SEQUENCE.name().into(),
                 emission_map: emission_map(self.scene).into(),
                 seed: asked.reference.seed,
-                own_nrms: reference.own_nrms.clone(),
+                own_nrms: reference.own_nrms().to_vec(),
                 factor: asked.reference.photons() as f64 / asked.photons as f64,
             },
             variants: asked.algorithms.iter().zip(runs).map(variant).collect(),
@@ -281,12 +216,12 @@ impl Job<'_> {
     }
 
     /// The reference and its key; `None` after an interrupt.
-    fn reference(&self) -> Result<Option<(Reference, String)>> {
+    fn reference(&self) -> Result<Option<(Reference<'_>, String)>> {
         let plan = &self.asked.reference;
         let key = format!(
             "{}\nreference: {} seed {}, {REPLICATES} x {} photons, {}\ngrids: {:?} of {:?}",
             scene_key(self.scene),
-            plan.sequence.name(),
+            SEQUENCE.name(),
             plan.seed,
             plan.photons_per_replicate,
             emission_map(self.scene),
@@ -305,22 +240,20 @@ impl Job<'_> {
                 replicates.push(counts);
                 continue;
             }
-            let traced =
-                trace_replicate(self.scene, &self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
-                    self.progress.add(n);
-                })?;
+            let traced = trace_replicate(&self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
+                self.progress.add(n);
+            })?;
             let Some(counts) = traced else { return Ok(None) };
             self.parts.store("reference", &part, &to_bytes(&counts))?;
             replicates.push(counts);
         }
-        Ok(Some((Reference::new(self.scene, &self.asked.grids, plan, &replicates), key)))
+        Ok(Some((Reference::new(&self.asked.grids, plan, &replicates)?, key)))
     }
 
     /// Every run that is finished, by variant. Variants take turns, so that a machine that gets slower or faster does so
     /// for all of them.
-    fn runs(&self, reference: &Reference, reference_key: &str) -> Result<Vec<Vec<Run>>> {
+    fn runs(&self, reference: &Reference<'_>, reference_key: &str) -> Result<Vec<Vec<Run>>> {
         let asked = &self.asked;
-        let measure = Measure { scene: self.scene, grids: &asked.grids, reference };
         let mut runs = vec![Vec::new(); asked.algorithms.len()];
         for (k, seed) in asked.seeds.iter().enumerate() {
             for (algorithm, runs_of) in asked.algorithms.iter().zip(&mut runs) {
@@ -328,7 +261,7 @@ impl Job<'_> {
                     continue;
                 }
                 self.progress.say(format!("{}, seed {} of {}", algorithm.name(), k + 1, asked.seeds.len()));
-                match self.run(&measure, *algorithm, *seed, reference_key)? {
+                match self.run(reference, *algorithm, *seed, reference_key)? {
                     Some(found) => runs_of.extend(found),
                     None => return Ok(runs),
                 }
@@ -340,59 +273,23 @@ impl Job<'_> {
     /// One point set of one algorithm, found or traced; `None` after an interrupt.
     fn run(
         &self,
-        measure: &Measure<'_>,
+        reference: &Reference<'_>,
         algorithm: Algorithm,
         seed: u64,
         reference_key: &str,
     ) -> Result<Option<Vec<Run>>> {
         let asked = &self.asked;
         let key = format!("{reference_key}\nrun: {} seed {seed}, N {:?}", algorithm.name(), asked.ladder);
-        let found = found(&self.parts, self.progress, "run", &key);
-        if let Some(found) = found.and_then(|bytes| serde_json::from_slice(&bytes).ok()) {
+        if let Some(found) = found_json(&self.parts, self.progress, "run", &key) {
             self.progress.add(asked.photons_of(algorithm));
             return Ok(Some(found));
         }
         let progress = |n| self.progress.add(n);
-        let traced = measure.ladder(algorithm, seed, &asked.ladder, &INTERRUPTED, &progress)?;
+        let traced =
+            reference.measure(algorithm, seed, &asked.ladder, processor_time, &INTERRUPTED, &progress)?;
         if let Some(traced) = &traced {
-            let bytes = serde_json::to_vec_pretty(traced).map_err(|e| {
-                Diagnostic::new(Kind::Io, format!("\"{e}\" while writing a run"), "a run as text")
-            })?;
-            self.parts.store("run", &key, &bytes)?;
+            store_json(&self.parts, "run", &key, traced)?;
         }
         Ok(traced)
     }
-}
-
-/// All that a scene's photons depend on.
-pub(super) fn scene_key(scene: &Scene) -> String {
-    let identity = &scene.identity;
-    let version = env!("CARGO_PKG_VERSION");
-    let mut key = format!("caustix {version} revision {REVISION}\nscene {}", identity.sha256);
-    for (file, sha256) in &identity.files {
-        key.push_str(&format!("\nfile {sha256} {file}"));
-    }
-    key
-}
-
-/// A part that is there and whole; one that is damaged is told, and made again.
-pub(super) fn found(parts: &Parts, progress: &Progress, kind: &str, key: &str) -> Option<Vec<u8>> {
-    match parts.load(kind, key) {
-        Found::Whole(content) => Some(content),
-        Found::Missing => None,
-        Found::Damaged(diagnostic) => {
-            progress.aside(|| say(&format!("warning: {diagnostic}")));
-            None
-        }
-    }
-}
-
-/// The command as it was typed, without the folder that the program lies in.
-pub(super) fn command_line() -> String {
-    let quoted = |word: String| {
-        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:^=+".contains(c);
-        if !word.is_empty() && word.chars().all(plain) { word } else { format!("'{word}'") }
-    };
-    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
-    std::iter::once("caustix".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

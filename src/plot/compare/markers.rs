@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::plot::canvas::Colour;
 use crate::plot::drawing::Shape;
+use crate::report::colour::Colour;
 
 /// Radius of a marker, pixels.
 const RADIUS: f64 = 5.5;

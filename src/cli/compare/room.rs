@@ -1,28 +1,28 @@
-//! `caustix compare` on a scene with [compare]: sequences side by side, photons reflected a fixed number of times.
+//! Sequences side by side in a scene with `[compare]`, photons reflected a fixed number of times.
 
 use std::sync::atomic::Ordering;
 
-use crate::error::{Diagnostic, Kind};
+use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
+use crate::cli::render::{make_directory, thread_pool};
+use crate::cli::{Done, exit, print, say};
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::atomic::write_each;
 use crate::files::parts::Parts;
 use crate::lab::room::measure::{Measurement, Task, measure};
 use crate::lab::room::{Options, RoomStudy};
-use crate::report::room::{text, write_files};
+use crate::report::room::{csv, deviations_csv, markdown, text};
 use crate::scene::Scene;
 
-use super::compare::{CompareArgs, command_line, found, scene_key, seeds};
-use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::render::{make_directory, thread_pool};
-use super::{exit, print, say};
+use super::parts::{command_line, found_json, scene_key, store_json};
+use super::{CompareArgs, seeds};
 
 /// Runs the study; the exit code.
-pub(super) fn compare(args: &CompareArgs, scene: &Scene) -> Result<u8, Vec<Diagnostic>> {
-    let one = |e: Diagnostic| vec![e];
-    refuse_what_has_no_meaning(args).map_err(one)?;
-    let mut options = Options::new(args.full);
-    options.seeds = seeds(args).map_err(one)?;
-    make_directory(&args.output).map_err(one)?;
+pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
+    refuse_what_has_no_meaning(args)?;
+    let options = Options::new(Options::paper_ladder(args.full), seeds(args)?)?;
+    make_directory(&args.output)?;
     catch_interrupts();
-    let pool = thread_pool(args.threads).map_err(one)?;
+    let pool = thread_pool(args.threads)?;
     let progress = Progress::new(args.quiet, options.photons());
     let parts = Parts::new(args.output.join("parts"));
     let mut measurements = Vec::new();
@@ -31,7 +31,7 @@ pub(super) fn compare(args: &CompareArgs, scene: &Scene) -> Result<u8, Vec<Diagn
         match pool.install(|| measurement(scene, &task, &parts, &progress)) {
             Ok(measurement) => measurements.push(measurement),
             Err(e) if e.kind() == Kind::Interrupted => break,
-            Err(e) => return Err(vec![e]),
+            Err(e) => return Err(e.into()),
         }
     }
     progress.finish();
@@ -44,17 +44,24 @@ pub(super) fn compare(args: &CompareArgs, scene: &Scene) -> Result<u8, Vec<Diagn
         ));
         return Ok(exit::INTERRUPTED);
     }
-    let study = RoomStudy::new(scene, &options, &measurements).map_err(one)?;
-    let (_, errors) = write_files(&study, &command_line(), &args.output);
+    let study = RoomStudy::new(scene, &options, &measurements)?;
+    let (_, errors) = write_each(
+        &args.output,
+        &[
+            ("compare.csv", csv(&study)),
+            ("compare.md", markdown(&study, &command_line())),
+            ("deviations.csv", deviations_csv(&study)),
+        ],
+    );
     if !args.quiet {
         print(&text(&study));
         print(&format!("written to {}\n", args.output.display()));
     }
-    if errors.is_empty() { Ok(exit::DONE) } else { Err(errors) }
+    if errors.is_empty() { Ok(exit::DONE) } else { Err(errors.into()) }
 }
 
 /// The numbers of photons and the sequences of this study are the paper's.
-fn refuse_what_has_no_meaning(args: &CompareArgs) -> Result<(), Diagnostic> {
+fn refuse_what_has_no_meaning(args: &CompareArgs) -> Result<()> {
     let given = [
         ("--photons", args.photons.is_some()),
         ("--variants", !args.variants.is_empty()),
@@ -72,22 +79,13 @@ fn refuse_what_has_no_meaning(args: &CompareArgs) -> Result<(), Diagnostic> {
     }
 }
 
-fn measurement(
-    scene: &Scene,
-    task: &Task,
-    parts: &Parts,
-    progress: &Progress,
-) -> Result<Measurement, Diagnostic> {
+fn measurement(scene: &Scene, task: &Task, parts: &Parts, progress: &Progress) -> Result<Measurement> {
     let key = format!("{}\nroom: {task}", scene_key(scene));
-    let kept = found(parts, progress, "room", &key);
-    if let Some(kept) = kept.and_then(|bytes| serde_json::from_slice::<Measurement>(&bytes).ok()) {
+    if let Some(kept) = found_json(parts, progress, "room", &key) {
         progress.add(task.photons);
         return Ok(kept);
     }
-    let measured = measure(scene, task, &INTERRUPTED, &|n| progress.add(n))?;
-    let bytes = serde_json::to_vec(&measured).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing a measurement"), "a measurement as text")
-    })?;
-    parts.store("room", &key, &bytes)?;
+    let measured = measure(scene, task, processor_time, &INTERRUPTED, &|n| progress.add(n))?;
+    store_json(parts, "room", &key, &measured)?;
     Ok(measured)
 }

@@ -1,7 +1,5 @@
 //! Scales with round numbers: ticks at 1, 2, 5 times powers of ten, their labels, and the scale of a lux map.
 
-use crate::plot::resample::area_average;
-
 /// A mark of a scale.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
@@ -9,19 +7,6 @@ pub struct Tick {
     pub value: f64,
     /// The value in decimal.
     pub label: String,
-}
-
-/// What scale a map is shown on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    /// From zero to a round number above the maximum.
-    Linear,
-    /// Logarithmic up to a round number above the maximum, over at most four decades.
-    Log,
-    /// By the data: the top at the 99.8 % quantile where the brightest cells lie far above it, logarithmic where even
-    /// then most of the map would be black.
-    #[default]
-    Auto,
 }
 
 /// A scale fitted to data: what value has which place from 0 to 1.
@@ -45,29 +30,18 @@ pub struct Axis {
 const AUTO_QUANTILE: f64 = 0.998;
 /// A linear scale whose top is this many medians leaves the map black.
 const AUTO_LOG_RATIO: f64 = 40.0;
-/// Cells along a side over which a typical value is taken.
-const TYPICAL_CELLS: usize = 128;
 /// Most that a logarithmic scale spans.
 const LOG_SPAN: f64 = 1e4;
 
 impl Axis {
-    /// The scale for these values; NaN and infinities are ignored, negative values count as below the foot.
-    pub fn fit(values: &[f64], scale: Scale) -> Self {
-        Self::fit_with_typical(values, scale, values)
+    /// The scale for these values: the top at the 99.8 % quantile where the greatest lie far above it, logarithmic where
+    /// even then most would be black. NaN and infinities are ignored, negative values count as below the foot.
+    pub fn fit(values: &[f64]) -> Self {
+        Self::fit_with_typical(values, values)
     }
 
-    /// The scale for a map of `cells`. Where photons are few, most cells hold none or one of them; what is typical is
-    /// therefore taken from averages over larger areas.
-    pub fn fit_map(values: &[f64], cells: [usize; 2], scale: Scale) -> Self {
-        let coarse = cells.map(|n| n.min(TYPICAL_CELLS));
-        if scale == Scale::Auto && coarse != cells {
-            Self::fit_with_typical(values, scale, &area_average(values, cells, coarse))
-        } else {
-            Self::fit(values, scale)
-        }
-    }
-
-    fn fit_with_typical(values: &[f64], scale: Scale, typical: &[f64]) -> Self {
+    /// The same, where what is typical is told by other values, as by averages over larger areas of a map.
+    pub fn fit_with_typical(values: &[f64], typical: &[f64]) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let max = sorted.last().copied().unwrap_or(0.0);
@@ -75,22 +49,15 @@ impl Axis {
         if max <= f64::MIN_POSITIVE / f64::EPSILON {
             return Self::linear(1.0, &sorted);
         }
-        match scale {
-            Scale::Linear => Self::linear(max, &sorted),
-            Scale::Log => Self::log(max, &sorted),
-            Scale::Auto => {
-                let bulk = quantile(&sorted, AUTO_QUANTILE);
-                // A clipped scale must be worth its ">": it shows at least half as much again.
-                let top = if bulk > 0.0 && max > 1.5 * bulk { bulk } else { max };
-                let mut lit: Vec<f64> =
-                    typical.iter().copied().filter(|v| v.is_finite() && *v > 0.0).collect();
-                lit.sort_unstable_by(f64::total_cmp);
-                if top > AUTO_LOG_RATIO * quantile(&lit, 0.5) {
-                    Self::log(max, &sorted)
-                } else {
-                    Self::linear(top, &sorted)
-                }
-            }
+        let bulk = quantile(&sorted, AUTO_QUANTILE);
+        // A clipped scale must be worth its ">": it shows at least half as much again.
+        let top = if bulk > 0.0 && max > 1.5 * bulk { bulk } else { max };
+        let mut lit: Vec<f64> = typical.iter().copied().filter(|v| v.is_finite() && *v > 0.0).collect();
+        lit.sort_unstable_by(f64::total_cmp);
+        if top > AUTO_LOG_RATIO * quantile(&lit, 0.5) {
+            Self::log(max, &sorted)
+        } else {
+            Self::linear(top, &sorted)
         }
     }
 
@@ -131,7 +98,7 @@ impl Axis {
 }
 
 /// The value below which this share of sorted values lies (nearest rank); 0 for none.
-pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+fn quantile(sorted: &[f64], share: f64) -> f64 {
     let rank = (share * sorted.len() as f64).ceil() as usize;
     sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).copied().unwrap_or(0.0)
 }
@@ -204,23 +171,6 @@ fn label(value: f64, exponent: i32) -> String {
     }
 }
 
-/// A measured value with three significant digits, whole numbers from 1000 on; "-" for NaN.
-pub fn three_digits(value: f64) -> String {
-    let size = value.abs();
-    if value.is_nan() {
-        "-".to_owned()
-    } else if size == 0.0 {
-        "0".to_owned()
-    } else if !(1e-3..1e6).contains(&size) {
-        format!("{value:.2e}")
-    } else {
-        // Rounding may carry into the next decade, so its exponent decides.
-        let rounded: f64 = format!("{size:.2e}").parse().unwrap_or(size);
-        let exponent = libm::floor(libm::log10(rounded)) as i32;
-        format!("{value:.*}", usize::try_from(2 - exponent).unwrap_or(0))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -267,25 +217,8 @@ mod tests {
     }
 
     #[test]
-    fn measured_values_have_three_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (12.345, "12.3"),
-            (9.999, "10.0"),
-            (1234.5, "1234"),
-            (0.012_345, "0.0123"),
-            (123_456_789.0, "1.23e8"),
-            (-2.5, "-2.50"),
-            (1e-5, "1.00e-5"),
-        ] {
-            assert_eq!(three_digits(value), text);
-        }
-        assert_eq!(three_digits(f64::NAN), "-");
-    }
-
-    #[test]
     fn linear_scale_goes_from_zero_to_a_round_number_above_the_maximum() {
-        let axis = Axis::fit(&[3.0, 431.0, f64::NAN, 17.0], Scale::Linear);
+        let axis = Axis::fit(&[3.0, 431.0, f64::NAN, 17.0]);
         assert_eq!((axis.low, axis.high, axis.log, axis.clipped_above), (0.0, 500.0, false, false));
         assert_eq!(labels(&axis.ticks), ["0", "100", "200", "300", "400", "500"]);
         assert_eq!(axis.place(250.0), 0.5);
@@ -295,57 +228,36 @@ mod tests {
 
     #[test]
     fn log_scale_has_equal_steps_for_equal_ratios() {
-        let values: Vec<f64> = (0..=300).map(|i| 10f64.powf(i as f64 / 100.0)).collect();
-        let axis = Axis::fit(&values, Scale::Log);
-        assert!(axis.log && axis.low == 1.0 && axis.high == 1000.0, "{axis:?}");
-        assert!((axis.place(10.0) - 1.0 / 3.0).abs() < 1e-12);
+        let values: Vec<f64> = (0..=400).map(|i| 10f64.powf(i as f64 / 100.0)).collect();
+        let axis = Axis::fit(&values);
+        assert!(axis.log && axis.low == 1.0 && axis.high == 1e4, "{axis:?}");
+        assert!((axis.place(10.0) - 0.25).abs() < 1e-12);
         assert_eq!(axis.place(0.0), 0.0);
     }
 
     #[test]
     fn automatic_scale_clips_few_bright_cells_and_turns_logarithmic_for_wide_ranges() {
         let mut values: Vec<f64> = (0..10_000).map(|i| 50.0 + (i % 50) as f64).collect();
-        assert!(!Axis::fit(&values, Scale::Auto).clipped_above);
+        assert!(!Axis::fit(&values).clipped_above);
         for bright in values.iter_mut().take(10) {
             *bright = 5000.0;
         }
-        let axis = Axis::fit(&values, Scale::Auto);
+        let axis = Axis::fit(&values);
         assert_eq!((axis.high, axis.log, axis.clipped_above), (100.0, false, true));
-        let axis = Axis::fit(&values, Scale::Linear);
-        assert_eq!((axis.high, axis.clipped_above), (5000.0, false));
         let wide: Vec<f64> = (0..10_000).map(|i| 10f64.powf(i as f64 / 2500.0)).collect();
-        assert!(Axis::fit(&wide, Scale::Auto).log);
-    }
-
-    #[test]
-    fn what_is_typical_does_not_depend_on_how_few_photons_a_cell_got() {
-        // One cell in 16 holds a photon worth 800 lx, a small spot holds 50 of them: 50 lx is typical, not 800.
-        let n = 512;
-        let mut values = vec![0.0; n * n];
-        for i in (0..n * n).filter(|i| i % n % 4 == 0 && i / n % 4 == 0) {
-            values[i] = 800.0;
-        }
-        for i in 0..n * 20 {
-            values[i / 40 * n + i % 40] = 40_000.0;
-        }
-        assert!(Axis::fit_map(&values, [n, n], Scale::Auto).log);
-        assert!(!Axis::fit_map(&vec![50.0; n * n], [n, n], Scale::Auto).log);
+        assert!(Axis::fit(&wide).log);
     }
 
     #[test]
     fn degenerate_data_give_a_scale() {
         for values in [vec![], vec![0.0; 4], vec![f64::NAN; 3], vec![-1.0], vec![f64::INFINITY]] {
-            for scale in [Scale::Linear, Scale::Log, Scale::Auto] {
-                let axis = Axis::fit(&values, scale);
-                assert_eq!((axis.low, axis.high), (0.0, 1.0), "{values:?}");
-            }
+            let axis = Axis::fit(&values);
+            assert_eq!((axis.low, axis.high), (0.0, 1.0), "{values:?}");
         }
         for constant in [7.0, 1e-12, 1e300, 5e-324] {
-            for scale in [Scale::Linear, Scale::Log, Scale::Auto] {
-                let axis = Axis::fit(&[constant; 9], scale);
-                assert!(axis.high >= constant && axis.low < axis.high, "{constant}: {axis:?}");
-                assert!(axis.place(constant).is_finite());
-            }
+            let axis = Axis::fit(&[constant; 9]);
+            assert!(axis.high >= constant && axis.low < axis.high, "{constant}: {axis:?}");
+            assert!(axis.place(constant).is_finite());
         }
     }
 }

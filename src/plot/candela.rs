@@ -2,13 +2,15 @@
 
 use crate::photometry::web::PhotometricType;
 use crate::photometry::{Photometry, Summary};
+use crate::report::numbers::digits;
 
+use super::drawing::Drawing;
+use super::page::base_name;
 use super::polar::{Curve, PolarPlot};
-use super::text::digits;
 
 /// The diagram of a file: type C the planes C0-C180 and C90-C270; types A and B the vertical section (H = 0) and the
 /// horizontal one (V = 0), with the aim at the bottom. One curve where both planes are the same.
-pub fn polar_plot(photometry: &Photometry, summary: &Summary) -> PolarPlot {
+pub fn drawing(photometry: &Photometry, summary: &Summary) -> Drawing {
     let web = &photometry.web;
     let (first, second) = match web.photometric_type {
         PhotometricType::C => {
@@ -34,7 +36,7 @@ pub fn polar_plot(photometry: &Photometry, summary: &Summary) -> PolarPlot {
         curves.truncate(1);
         curves[0].label = "all planes".into();
     }
-    PolarPlot { title: title(photometry), curves, footer: footer(summary) }
+    PolarPlot { title: title(photometry), curves, footer: footer(summary) }.drawing()
 }
 
 /// Intensities at the table's own angles on both sides, and at whole degrees between.
@@ -51,9 +53,7 @@ fn title(photometry: &Photometry) -> String {
         ["LUMINAIRE", "LUMCAT"].iter().filter_map(|k| photometry.label(k)).find(|t| !t.trim().is_empty());
     match named {
         Some(text) => text.lines().next().unwrap_or_default().trim().to_string(),
-        None => std::path::Path::new(&photometry.file)
-            .file_name()
-            .map_or_else(|| photometry.file.clone(), |n| n.to_string_lossy().into_owned()),
+        None => base_name(&photometry.file),
     }
 }
 

@@ -16,7 +16,7 @@
 use crate::scene::camera::{CameraSpec, Exposure};
 use crate::surface::luminance;
 
-use crate::plot::canvas::Colour;
+use super::Colour;
 
 /// Where the log-average comes to lie: reflectance of a photographer's grey card.
 const KEY: f64 = 0.18;

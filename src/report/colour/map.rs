@@ -4,7 +4,8 @@
 //! rises from 0.10 to 0.97, hue turns once from blue to yellow, chroma follows the sRGB gamut, and the knots lie at
 //! equal Euclidean steps. Equal steps in lux therefore look about equal, also in grey and to colour-blind readers.
 
-use crate::plot::canvas::Colour;
+use super::Colour;
+use super::scale::Axis;
 
 /// Oklab L, a, b at equal steps of the scale.
 const KNOTS: [[f64; 3]; 25] = [
@@ -35,9 +36,9 @@ const KNOTS: [[f64; 3]; 25] = [
     [0.9700, -0.0149, 0.0714],
 ];
 
-/// Colour of values that do not exist (NaN).
-pub fn no_value() -> Colour {
-    Colour::grey(160)
+/// The colour of a value on a scale; grey for one that does not exist (NaN, infinity).
+pub fn value_colour(value: f64, axis: &Axis) -> Colour {
+    if value.is_finite() { colour(axis.place(value)) } else { Colour::grey(160) }
 }
 
 /// The colour at `t` of the scale, 0 at its foot and 1 at its top; beyond it stays at the end.
@@ -53,7 +54,7 @@ pub fn lightness(t: f64) -> f64 {
 /// Catmull-Rom interpolation of the knots: smooth, and through each of them.
 fn oklab(t: f64) -> [f64; 3] {
     let last = KNOTS.len() - 1;
-    // NaN goes to the foot; callers that can tell use `no_value`.
+    // NaN goes to the foot; `value_colour` shows that there is none.
     let x = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) * last as f64 };
     let cell = (x as usize).min(last - 1);
     let f = x - cell as f64;
