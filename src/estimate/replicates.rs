@@ -72,6 +72,7 @@ mod tests {
         assert_eq!(standard_error_of_cell(0, 0, 8), Some(1.0));
         assert_eq!(standard_error_of_cell(3, 9, 8), Some(2.0));
         assert_eq!(standard_error_of_cell(100, 10_000, 1), None);
+        assert_eq!(standard_error_of_cell(3, 9, 1), None);
         assert_eq!(standard_error_of_total(0, 0, 8), Some(0.0));
     }
 }

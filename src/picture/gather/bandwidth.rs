@@ -61,19 +61,22 @@ pub fn choose<const C: usize>(
     let points: Vec<Point> =
         places.into_par_iter().filter_map(|i| ladder.point(footprints, map, kernel, i)).collect();
     let count = |rung: usize| points.iter().map(|p| p.count[rung]).sum::<f64>() / points.len().max(1) as f64;
-    let candidates = RUNGS - SECOND_STEPS;
-    let costs = costs(&points, fraction);
-    // Of equals the widest; never so narrow that hardly any photons are left.
-    let best = (0..candidates)
-        .filter(|&i| count(i) * fraction.recip() >= LEAST_NEIGHBOURS)
-        .min_by(|&a, &b| costs[a].total_cmp(&costs[b]).then(b.cmp(&a)))
-        .unwrap_or(candidates - 1);
+    // Never so narrow that hardly any photons are left.
+    let best = cheapest(&costs(&points, fraction), |i| count(i) * fraction.recip() >= LEAST_NEIGHBOURS);
     ChosenRadius { radius_m: ladder.radii_m[best], mean_neighbours: count(best), neighbours }
 }
 
 /// The nearest that are taken at least, of so many photons in all.
 fn least_neighbours(photons: f64) -> u32 {
     ((photons * MOST_OF_ALL) as u32).clamp(FEWEST_LOCAL, FEWEST_NEIGHBOURS)
+}
+
+/// The rung of least cost among those allowed, of equals the widest; the widest of all where none is.
+fn cheapest(costs: &[f64], allowed: impl Fn(usize) -> bool) -> usize {
+    (0..costs.len())
+        .filter(|&i| allowed(i))
+        .min_by(|&a, &b| costs[a].total_cmp(&costs[b]).then(b.cmp(&a)))
+        .unwrap_or(costs.len() - 1)
 }
 
 /// Mean squared relative error of every rung.
@@ -98,4 +101,44 @@ fn without_photons<const C: usize>(footprints: &Footprints<'_>, map: &PhotonMap<
     let (low, high) = footprints.geometry().bounds();
     let size = (high - low).length() / 64.0;
     if map.built_for_m() > 0.0 { map.built_for_m() } else { size.max(f64::MIN_POSITIVE) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::gather::BIAS_PER_DIFFERENCE;
+
+    #[test]
+    fn the_cheapest_is_taken_of_equals_the_widest() {
+        assert_eq!(cheapest(&[3.0, 1.0, 2.0, 1.0, 4.0], |_| true), 3);
+        assert_eq!(cheapest(&[3.0, 1.0, 2.0], |i| i != 1), 2);
+        assert_eq!(cheapest(&[3.0, 1.0, 2.0], |_| false), 2);
+    }
+
+    #[test]
+    fn a_cost_is_variance_of_the_run_and_the_bias_beyond_noise() {
+        // Density 2; variance 8 and no bias at first, then a difference of 3 with a noise of 1, then noise alone.
+        let mut point = Point {
+            count: [1.0; RUNGS],
+            variance: [8.0; RUNGS],
+            difference: [0.0; RUNGS],
+            noise: [0.0; RUNGS],
+            density: 2.0,
+        };
+        (point.difference[1], point.noise[1]) = (3.0, 1.0);
+        point.noise[2] = 50.0;
+        let costs = costs(&[point], 0.25);
+        let bias2 = (9.0 - 1.0) / 4.0 * BIAS_PER_DIFFERENCE * BIAS_PER_DIFFERENCE;
+        assert_eq!(costs.len(), RUNGS - SECOND_STEPS);
+        assert_eq!(costs[0], 0.25 * 2.0);
+        // What a narrow radius proves of the bias holds for wider ones.
+        for cost in &costs[1..] {
+            assert!((cost - 0.5 - bias2).abs() < 1e-12 * bias2, "{costs:?}");
+        }
+    }
+
+    #[test]
+    fn neighbours_are_a_part_of_all_between_sixteen_and_sixty_four() {
+        assert_eq!([0.0, 1000.0, 1024.0, 1e9].map(least_neighbours), [16, 31, 32, 64]);
+    }
 }

@@ -241,21 +241,110 @@ mod tests {
     fn of_k_nearest_the_kth_is_the_rim_and_the_bias_a_part_of_the_light() {
         let geometry = floor();
         let map = row(&geometry, 1000);
-        let choice = Choice { bandwidth: Bandwidth::Nearest(20), kernel: Kernel::Flat, replicates: 2 };
+        let kernel = Kernel::Epanechnikov;
+        let choice = Choice { bandwidth: Bandwidth::Nearest(20), kernel, replicates: 2 };
         let density = Density::new(Arc::new(Footprints::new(&geometry)), &map, 3.0, choice);
         let at = on_floor(&geometry, 0.5);
         let sums = evenly(&density, &[at], 1.0);
         let mut distances: Vec<f64> =
             map.photons().iter().map(|p| map.position(p).distance(at.position)).collect();
         distances.sort_by(f64::total_cmp);
-        let exact = 19.0 * 3.0 / (std::f64::consts::PI * distances[19].powi(2));
-        assert!((sums.value[0] / exact - 1.0).abs() < 1e-9, "{} {exact}", sums.value[0]);
-        let wide = 39.0 * 3.0 / (std::f64::consts::PI * distances[39].powi(2));
-        assert!((sums.second[0] / wide - 1.0).abs() < 1e-9, "{} {wide}", sums.second[0]);
+        // Photons of 3 lm under 2 / (pi r^2) (1 - d^2 / r^2), which is 0 for the kth.
+        let exact = |k: usize| {
+            let r2 = distances[k - 1].powi(2);
+            let near = distances[..k].iter().map(|d| 1.0 - d * d / r2).sum::<f64>();
+            3.0 * near * 2.0 / (std::f64::consts::PI * r2)
+        };
+        assert!((sums.value[0] / exact(20) - 1.0).abs() < 1e-9, "{} {}", sums.value[0], exact(20));
+        assert!((sums.second[0] / exact(40) - 1.0).abs() < 1e-9, "{} {}", sums.second[0], exact(40));
         assert!((sums.nearest_bias / (sums.value[0] / 39.0) - 1.0).abs() < 1e-12);
         assert!((sums.by_replicate.iter().sum::<f64>() / sums.value[0] - 1.0).abs() < 1e-12);
         assert_eq!(sums.sparse, 0.0);
         let twice = evenly(&density, &[at, at], 0.5);
         assert!((twice.nearest_bias / sums.nearest_bias - 1.0).abs() < 1e-12);
+    }
+
+    /// Photons at these distances from (0.5, 0.5) on a floor of several, on its front or back.
+    fn about_the_middle(geometry: &Geometry, floor: u32, front: bool, distances: &[f64]) -> Vec<Photon<1>> {
+        let (low, high) = geometry.bounds();
+        let frame = Frame::new(low, high);
+        let place = |d: &f64| frame.cell(DVec3::new(0.5 + d, 0.5, f64::from(floor) * 1e-3));
+        let tag = if front { FRONT } else { 0 };
+        let photon = |d| Photon {
+            cell: place(d),
+            direction: pack(DVec3::NEG_Z),
+            primitive: 2 * floor,
+            tag,
+            weight: [1.0],
+        };
+        distances.iter().map(photon).collect()
+    }
+
+    #[test]
+    fn few_photons_owe_the_error_of_one_more() {
+        let geometry = floor();
+        let (low, high) = geometry.bounds();
+        let choice = Choice { bandwidth: Bandwidth::Radius(0.1), kernel: Kernel::Flat, replicates: 1 };
+        let owed = |near: usize, far: usize| {
+            let distances = [vec![0.05; near], vec![0.12; far]].concat();
+            let photons = about_the_middle(&geometry, 0, true, &distances);
+            let map = PhotonMap::build(photons, Frame::new(low, high), 0.1);
+            let density = Density::new(Arc::new(Footprints::new(&geometry)), &map, 3.0, choice);
+            evenly(&density, &[on_floor(&geometry, 0.5)], 1.0).sparse
+        };
+        let one = 3.0 / (std::f64::consts::PI * 0.01);
+        for (near, far, exact) in
+            [(0, 0, one), (3, 20, 2.0 * one), (9, 0, 10f64.sqrt() * one), (10, 0, 0.0), (11, 5, 0.0)]
+        {
+            assert!((owed(near, far) - exact).abs() <= 1e-12 * one, "{near} {far}: {}", owed(near, far));
+        }
+    }
+
+    #[test]
+    fn photons_of_another_side_or_surface_are_no_neighbours() {
+        let sheet = |i: u32| {
+            let corner = DVec3::Z * (1e-3 * f64::from(i));
+            let shape = Shape::Rectangle(Rectangle::new(corner, DVec3::X, DVec3::Y).unwrap());
+            Surface { name: format!("s{i}"), shape }
+        };
+        let geometry = Geometry::build(vec![sheet(0), sheet(1), sheet(2)]).unwrap();
+        let at = |far: f64| (1..=30).map(|i| far * f64::from(i)).collect::<Vec<_>>();
+        // In the middle sheet's front 30 photons; nearer ones on its back and on the other two.
+        let all = [
+            about_the_middle(&geometry, 1, true, &at(0.01)),
+            about_the_middle(&geometry, 1, false, &at(0.001)),
+            about_the_middle(&geometry, 0, true, &at(0.001)),
+            about_the_middle(&geometry, 2, true, &at(0.001)),
+        ];
+        let (low, high) = geometry.bounds();
+        let alone = PhotonMap::build(all[0].clone(), Frame::new(low, high), 0.1);
+        let among = PhotonMap::build(all.concat(), Frame::new(low, high), 0.1);
+        let from = DVec3::new(0.5, 0.5, 1.5e-3);
+        let at = geometry.nearest(from, DVec3::NEG_Z, &Whereabouts::default(), &mut 0).unwrap();
+        assert_eq!((at.surface.0, at.front), (1, true));
+        for bandwidth in [
+            Bandwidth::Radius(0.05),
+            Bandwidth::Nearest(10),
+            Bandwidth::AtLeast { radius_m: 0.05, neighbours: 10 },
+        ] {
+            let choice = Choice { bandwidth, kernel: Kernel::Epanechnikov, replicates: 2 };
+            let value = |map| {
+                let density = Density::new(Arc::new(Footprints::new(&geometry)), map, 1.0, choice);
+                evenly(&density, &[at], 1.0).value[0]
+            };
+            assert!(value(&alone) > 0.0);
+            assert!((value(&among) / value(&alone) - 1.0).abs() < 1e-6, "{bandwidth:?}");
+        }
+    }
+
+    #[test]
+    fn progressive_radii_shrink_as_their_source_says() {
+        let radii = progressive(0.1, 3);
+        let second: f64 = 0.01 * (1.0 + PROGRESSIVE_ALPHA) / 2.0;
+        let third: f64 = second * (2.0 + PROGRESSIVE_ALPHA) / 3.0;
+        for (radius, exact) in radii.iter().zip([0.1, second.sqrt(), third.sqrt()]) {
+            assert!((radius / exact - 1.0).abs() < 1e-15, "{radii:?}");
+        }
+        assert_eq!((progressive(0.1, 0).len(), radii.len()), (1, 3));
     }
 }

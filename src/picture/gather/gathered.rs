@@ -207,13 +207,17 @@ mod tests {
         for i in 0..32 {
             for density in [1, 2] {
                 let found = sums.places.remember(density, &hit(f64::from(i)), 1).unwrap();
-                (found.reach_m, found.value) = (1.0, [f64::from(i)]);
+                (found.reach_m, found.value) = (1.0, [f64::from(i + 1)]);
             }
         }
         assert!(sums.places.remember(1, &hit(99.0), 1).is_none());
         assert!(sums.places.remember(3, &hit(99.0), 1).is_some());
-        assert_eq!(sums.places.near(2, &hit(31.0)).unwrap().value, [31.0]);
+        assert_eq!(sums.places.near(2, &hit(31.0)).unwrap().value, [32.0]);
+        (sums.value, sums.second, sums.by_replicate[0]) = ([1.0], [1.0], 1.0);
+        (sums.sparse, sums.nearest_bias) = (1.0, 1.0);
         sums.clear();
+        assert_eq!((sums.value, sums.second, sums.by_replicate[0]), ([0.0], [0.0], 0.0));
+        assert_eq!((sums.sparse, sums.nearest_bias), (0.0, 0.0));
         assert!(sums.places.near(1, &hit(0.0)).is_none());
         // Room is used again, but nothing that was in it.
         assert_eq!(sums.places.remember(1, &hit(0.0), 1).unwrap().value, [0.0]);

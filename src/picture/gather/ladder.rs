@@ -42,12 +42,12 @@ pub(super) struct Ladder {
 /// What is found about one photon, by rung.
 pub(super) struct Point {
     pub(super) count: [f64; RUNGS],
-    variance: [f64; RUNGS],
+    pub(super) variance: [f64; RUNGS],
     /// Difference that the second bandwidth makes, and its variance.
-    difference: [f64; RUNGS],
-    noise: [f64; RUNGS],
+    pub(super) difference: [f64; RUNGS],
+    pub(super) noise: [f64; RUNGS],
     /// The density, 1/m2, at the narrowest radius that has enough photons to tell.
-    density: f64,
+    pub(super) density: f64,
 }
 
 impl Point {
@@ -208,4 +208,41 @@ fn holds<const C: usize>(about: &Footprint<'_>, map: &PhotonMap<C>, photon: &Pho
 pub(super) fn places(n: usize, most: usize) -> Vec<usize> {
     let count = n.min(most);
     (0..count).map(|i| ((2 * i + 1) as u128 * n as u128 / (2 * count) as u128) as usize).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_come_from_the_spread_of_all_replicates_but_one() {
+        let ladder = Ladder { radii_m: [1.0; RUNGS], replicates: 3 };
+        let mut rings = vec![[(0.0, 0.0); RUNGS]; 3];
+        // Within rung 0: 4 and 2 photons; within rung 1 and wider: 5 each. The third replicate is left out.
+        (rings[0][0].0, rings[1][0].0) = (4.0, 2.0);
+        (rings[0][1].0, rings[1][1].0) = (1.0, 3.0);
+        rings[2][0].0 = 1000.0;
+        let point = ladder.estimates(&rings, 2, Kernel::Flat, &[1.0; RUNGS]);
+        // Three replicates for two: 9 and 15 photons.
+        assert_eq!((point.count[0], point.count[1], point.density), (9.0, 15.0, 15.0));
+        // s^2 of 4 and 2 is 2; of the differences 1 and 3, mean 2, as well.
+        assert_eq!((point.variance[0], point.variance[1]), (6.0, 0.0));
+        assert_eq!((point.difference[0], point.difference[1]), (6.0, 0.0));
+        assert_eq!((point.noise[0], point.noise[1]), (9.0 / 2.0 * 2.0, 0.0));
+        let unit = BIAS_PER_DIFFERENCE * BIAS_PER_DIFFERENCE / 225.0;
+        assert!((point.relative_bias2(0) - 27.0 * unit).abs() < 1e-12);
+        assert!((point.relative_variance(0) - 6.0 / 225.0).abs() < 1e-15);
+        // Of one replicate the variance is that of independent photons.
+        let alone = Ladder { radii_m: [1.0; RUNGS], replicates: 1 };
+        let point = alone.estimates(&rings[..1], usize::MAX, Kernel::Flat, &[1.0; RUNGS]);
+        assert_eq!((point.count[0], point.variance[0], point.noise[0]), (4.0, 4.0, 1.0));
+    }
+
+    #[test]
+    fn places_are_spread_evenly_and_moments_are_those_of_the_textbook() {
+        assert_eq!(places(8, 4), [1, 3, 5, 7]);
+        assert_eq!(places(3, 10), [0, 1, 2]);
+        assert_eq!(moments([1.0, 2.0, 6.0].into_iter()), (3.0, 7.0));
+        assert_eq!(moments([5.0].into_iter()), (5.0, 0.0));
+    }
 }
