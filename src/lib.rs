@@ -107,16 +107,16 @@ pub use sequence::Sequence;
 pub use run::{Estimate, Outcome};
 pub use transport::{Census, Ledger};
 // Results as text and files; `write_map_...` write a receiver's map, `write_picture_...` a camera's picture:
+#[cfg(feature = "plots")]
+pub use plot::maps::write_png as write_map_png;
+#[cfg(feature = "plots")]
+pub use plot::picture::{write_luminance_png, write_png as write_picture_png};
 pub use report::json::Report;
 pub use report::maps::{write_csv as write_map_csv, write_exr as write_map_exr};
 pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
 pub use report::statistics::ReceiverStatistics;
 pub use report::text::summary;
-#[cfg(feature = "plots")]
-pub use plot::maps::write_png as write_map_png;
-#[cfg(feature = "plots")]
-pub use plot::picture::{write_luminance_png, write_png as write_picture_png};
 // Pictures:
 pub use picture::{AnyPicture, Picture, PictureSummary, Watch, trace_picture};
 

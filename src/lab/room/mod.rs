@@ -10,8 +10,6 @@ pub mod deviation;
 pub mod measure;
 pub mod tables;
 
-use std::sync::atomic::AtomicBool;
-
 use crate::error::{Diagnostic, Kind, Result};
 use crate::scene::Scene;
 use crate::sequence::Sequence;
