@@ -1,5 +1,5 @@
-//! Nanoseconds per emission, one thread: tables of three sizes under three sequences; and the cell equation alone, by the
-//! project's solver and by those of the `roots` crate on the same function.
+//! Nanoseconds per emission, one thread: tables of three sizes under three sequences; and the cell equation alone, by
+//! each solver (benches/solvers.rs compares them with others).
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 use std::hint::black_box;
@@ -10,7 +10,8 @@ use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
 use caustix::files::lm63;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
-use caustix::sample::cell::{Cell, Row};
+use caustix::sample::angles::Row;
+use caustix::sample::cell::Cell;
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::Sampling;
 use caustix::sequence::independent::IndependentPoints;
@@ -21,9 +22,8 @@ use criterion::{
     BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
 };
 use glam::DVec3;
-use roots::{SimpleConvergency, find_root_brent, find_root_secant};
 
-/// Emissions, or roots, of one iteration.
+/// Emissions, or solutions, of one iteration.
 const BATCH: u64 = 1 << 12;
 
 fn own(name: &str) -> Photometry {
@@ -95,7 +95,7 @@ fn cells() -> Vec<(Row, Cell)> {
     ];
     let rows = [(0.0, 2.5), (2.5, 5.0), (42.5, 45.0), (87.5, 90.0), (60.0, 90.0), (175.0, 180.0)];
     let rows = rows.map(|(from, to): (f64, f64)| Row::new(from.to_radians(), to.to_radians()));
-    rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, 0, 0, c).unwrap()))).collect()
+    rows.into_iter().flat_map(|row| corners.map(|c| (row, Cell::new(&row, c).unwrap()))).collect()
 }
 
 fn cell_equation(criterion: &mut Criterion) {
@@ -112,14 +112,6 @@ fn cell_equation(criterion: &mut Criterion) {
     for method in Solver::ALL {
         solver(method.name(), &|row, cell, u| cell.sample_theta(row, u, method).s);
     }
-    // The width of a cell is of order 0.1, so the one absolute tolerance of `roots` serves as a relative one here.
-    let rule = || SimpleConvergency { eps: 1e-14, max_iter: 100 };
-    solver("roots: Brent", &|row, cell, u| {
-        find_root_brent(0.0, row.width, |s| cell.theta_cdf(row, s) - u, &mut rule()).unwrap_or(f64::NAN)
-    });
-    solver("roots: secant", &|row, cell, u| {
-        find_root_secant(0.0, row.width, |s| cell.theta_cdf(row, s) - u, &mut rule()).unwrap_or(f64::NAN)
-    });
 }
 
 criterion_group!(benches, emission, cell_equation);

@@ -3,9 +3,11 @@
 
 use std::f64::consts::{FRAC_1_PI, PI};
 use std::hint::black_box;
+use std::sync::Arc;
 
 use caustix::geometry::{Geometry, Hit, Rectangle, Shape, Surface, Whereabouts};
-use caustix::picture::gather::density::{Choice, Density, Gathered};
+use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::gather::{Choice, Density, Gathered};
 use caustix::picture::photon_map::record::{FRONT, pack};
 use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
@@ -57,12 +59,6 @@ fn build(c: &mut Criterion) {
     let (low, high) = geometry.bounds();
     let frame = Frame::new(low, high);
     let (grey, rgb) = (photons::<1>(&frame), photons::<3>(&frame));
-    let bytes = |held: usize| held as f64 / PHOTONS as f64;
-    println!(
-        "bytes a photon: {:.2} of one channel, {:.2} of three",
-        bytes(PhotonMap::build(grey.clone(), frame, radius(100.0)).memory_bytes()),
-        bytes(PhotonMap::build(rgb.clone(), frame, radius(100.0)).memory_bytes())
-    );
     group.bench_function("4.5 M photons, one channel", |b| {
         b.iter_batched(
             || grey.clone(),
@@ -101,7 +97,12 @@ fn gather(c: &mut Criterion) {
         ("fixed radius, Epanechnikov", Bandwidth::Radius(radius(100.0)), Kernel::Epanechnikov),
         ("k nearest, Epanechnikov", Bandwidth::Nearest(100), Kernel::Epanechnikov),
     ] {
-        let density = Density::new(&geometry, &map, 1e-6, Choice { bandwidth, kernel, replicates: 8 });
+        let density = Density::new(
+            Arc::new(Footprints::new(&geometry)),
+            &map,
+            1e-6,
+            Choice { bandwidth, kernel, replicates: 8 },
+        );
         let mut sums = Gathered::new(8);
         group.bench_function(name, |b| {
             b.iter(|| {
@@ -109,7 +110,7 @@ fn gather(c: &mut Criterion) {
                 for hit in &hits {
                     density.gather(hit, [1.0], |_, front| [if front { FRAC_1_PI } else { 0.0 }], &mut sums);
                 }
-                black_box(sums.bias())
+                black_box(sums.second)
             });
         });
     }

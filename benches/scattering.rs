@@ -14,7 +14,6 @@ use caustix::sample::coordinates::{Coordinates, Purpose};
 use caustix::sample::grid::Grid;
 use caustix::scattering::{Frame, LobeData, Quantity, ScatterTable};
 use caustix::sequence::owen::OwenPoints;
-use caustix::sequence::to_unit_f64;
 use caustix::surface::tabulated::{Energy, Options};
 use caustix::surface::{
     Event, Grey, Incidence, Lambertian, Material, Reflectance, Rgb, Tabulated, Throughput as Carried,
@@ -84,11 +83,8 @@ fn emit(grid: &Grid, first: u64) -> DVec3 {
     let mut sum = DVec3::ZERO;
     for i in first..first + BATCH {
         let mut c = Coordinates::new(&points, i, true);
-        let mut u = c.draw_reusable(Purpose::Emission);
-        let cell = c.choose(grid.choice(), &mut u, Purpose::Emission);
-        let u_theta = c.remainder(u, Purpose::EmissionTheta);
-        let u_phi = to_unit_f64(c.draw(Purpose::EmissionPhi));
-        sum += grid.place(cell, u_theta, u_phi, Solver::DEFAULT).direction;
+        let u = c.draw_reusable(Purpose::Emission);
+        sum += grid.draw_inverse(u, &mut c, Solver::DEFAULT).direction;
     }
     sum
 }

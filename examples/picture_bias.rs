@@ -6,16 +6,20 @@
 #[path = "../tests/support/caustic_views.rs"]
 mod views;
 
+#[path = "../tests/pictures/picture_bias.rs"]
+mod bias;
+
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
 use caustix::error::Diagnostic;
-use caustix::lab::study::picture_bias::{Row, mapped, rate, splatted};
 use caustix::plot::canvas::{Anchor, TextStyle};
 use caustix::plot::drawing::{Drawing, Pen, Shape};
 use caustix::report::colour::Colour;
-use caustix::scene::camera::Bandwidth;
+use caustix::scene::camera::{Bandwidth, Camera};
+
+use bias::{Row, mapped, rate, splatted};
 
 /// 2^m photons of the reference, its replicates, its seed.
 const REFERENCE: (u32, u32, u64) = (24, 16, 1000);
@@ -55,7 +59,8 @@ fn in_lines(errors: Vec<Diagnostic>) -> String {
 /// With the automatic bandwidth, then, where photons cost little, with the radius that this has at the least number of photons, falling as N^(-1/6).
 fn measured(view: &views::View) -> Result<Vec<Series>, Box<dyn Error>> {
     let (m, replicates, seed) = REFERENCE;
-    let reference = splatted(&view.scene, &view.spec, &views::plan(m, replicates, seed)?)?;
+    let reference =
+        splatted(&view.scene, &Camera::new(view.spec.clone())?, &views::plan(m, replicates, seed)?)?;
     let (compared, lit) = (reference.compared().count(), reference.lit().count());
     println!("{}: {compared} pixels compared, {lit} lit", view.name);
     let mut all: Vec<Series> = Vec::new();
@@ -69,7 +74,8 @@ fn measured(view: &views::View) -> Result<Vec<Series>, Box<dyn Error>> {
             if let Some(first_m) = first_m {
                 spec.bandwidth = Bandwidth::Radius(first_m * libm::exp2(-f64::from(m - LADDER[0]) / 6.0));
             }
-            let picture = |seed| mapped(&view.scene, &spec, &views::plan(m, REPLICATES, seed)?);
+            let camera = Camera::new(spec)?;
+            let picture = |seed| mapped(&view.scene, &camera, &views::plan(m, REPLICATES, seed)?);
             let pictures = (1..=SEEDS).map(picture).collect::<Result<Vec<_>, _>>()?;
             let row = Row::new(&reference, 1 << m, &pictures);
             println!("{}", line(m, &row));

@@ -1,49 +1,55 @@
-//! caustix: a light-side caustics simulator. Photometric files (IES LM-63) and a scene in; illuminance maps in lux out, with
-//! the error of every number.
+//! caustix traces photons from luminaires through glass, water and mirrors. Photometric files (IES LM-63) and a scene in;
+//! illuminance maps in lux out, with the error of every number.
 //!
-//! The pipeline, in the order of the modules; each uses only those before it:
+//! # From an IES file to a number
 //!
-//! 1. [`photometry`] reads a luminaire's file, [`scattering`] holds a surface's table; [`scene::file`] reads a scene, and [`scene::build`] makes a [`scene::Scene`] of
-//!    it: shapes ([`geometry`]), what they are made of ([`bsdf`]), [`emitter`]s, receivers. Everything is checked here, once.
-//! 2. [`run::Plan`] fixes how many photons are traced, in how many replicates, on which [`sequence`].
-//! 3. [`run::trace`]: point i of the sequence gives photon i its coordinates ([`sample`]); they choose its emitter, its
-//!    direction and what happens to it at every surface ([`transport`]), until it is absorbed or escapes.
-//! 4. [`tally`] counts arrivals in the receivers' cells, in integers: any number of threads gives the same bits.
-//! 5. [`estimate`] turns counts of replicates into standard errors; [`run::Outcome`] gives lux and lumens.
-//! 6. [`certificate`] compares directions that a sampler gives with the density that a photometric file stands for.
-//! 7. [`image`], [`report`] and [`cli`] write EXR, PNG and JSON, and are the command.
-//!
-//! Errors are [`Diagnostic`]s; nothing panics, exits or prints on data. `docs/METHOD.md` has the equations ("METHOD 3" in a
-//! comment is its section 3), `ARCHITECTURE.md` the reasons.
-//!
-//! # Example
-//!
-//! Illuminance in the middle of the plate of the built-in scene, and the flux on all of it:
+//! 1. [`read_photometry`] reads the file; [`Photometric`] is the emitter that it describes, put somewhere by an [`AimFrame`].
+//!    ([`Summary`] says what a data sheet would.)
+//! 2. [`SceneBuilder`] collects named emitters, surfaces (a [`Shape`] of a [`Material`]) and receivers ([`ReceiverSpec`]),
+//!    and checks them together. [`read_scene`] does the same for a scene file.
+//! 3. [`Plan`] fixes how many photons are traced, in how many replicates, on which [`Sequence`]; [`trace`] traces them.
+//! 4. [`Outcome`] gives lux and lumens, each an [`Estimate`]: value and standard error. [`write_map_exr`] and its neighbours
+//!    write maps.
 //!
 //! ```
-//! use caustix::run::{Plan, Settings, trace};
-//! use caustix::files::scene_toml;
+//! use caustix::{AimFrame, Emitter, Material, Photometric, Rectangle, ReceiverSpec, SceneBuilder, Shape};
+//! use caustix::{Plan, Settings, read_photometry, trace};
+//! use glam::dvec3;
 //! use std::sync::atomic::AtomicBool;
 //!
 //! # fn main() -> Result<(), Vec<caustix::Diagnostic>> {
-//! let scene = scene_toml::built_in()?.build()?;
-//! let settings = Settings { photons: Some(1 << 14), ..Settings::default() };
-//! let plan = Plan::new(&settings).map_err(|e| vec![e])?;
-//! let interrupt = AtomicBool::new(false);
-//! let outcome = trace(&scene, &plan, &interrupt, &|_photons| {}).map_err(|e| vec![e])?;
+//! let photometry = read_photometry("ies/spot.ies")?;
+//! let down = AimFrame::new(dvec3(0.0, 0.0, -1.0), None)?;
+//! let lamp = Photometric::new(&photometry, dvec3(0.0, 0.0, 2.0), down, None)?;
+//! let floor = Rectangle::new(dvec3(-1.0, -1.0, 0.0), dvec3(2.0, 0.0, 0.0), dvec3(0.0, 2.0, 0.0))?;
 //!
-//! let plate = &scene.receivers[0];
-//! let cell = 256 * 512 + 256; // row 256, column 256 of 512 x 512
-//! let middle = outcome.illuminance_lx(0, cell, plate.area_m2(cell));
-//! let flux = outcome.receiver_flux_lm(0);
-//! println!("{} lx in the middle, {} lm +- {:?}", middle.value, flux.value, flux.standard_error);
+//! let mut scene = SceneBuilder::new();
+//! scene.emitter("lamp", Emitter::Photometric(lamp));
+//! scene.surface("floor", Shape::Rectangle(floor), Material::Absorber);
+//! scene.receiver(ReceiverSpec::new("floor", "floor")?.with_cells([1, 1])?);
+//! let scene = scene.build()?;
 //!
-//! assert!((scene.emitters.flux_lm() - 989.58).abs() < 0.01);
-//! assert!((flux.value - 803.06).abs() < 1.0); // what 2^22 photons say
-//! assert!(outcome.ledger.is_balanced());
+//! let plan = Plan::new(&Settings { photons: Some(1 << 14), ..Settings::default() })?;
+//! let outcome = trace(&scene, &plan, &AtomicBool::new(false), &|_photons| {})?;
+//! let floor = outcome.illuminance_lx(0, 0, scene.receivers[0].area_m2(0));
+//! println!("{} +- {:?} lx on average", floor.value, floor.standard_error);
+//! # assert!((4.0 * floor.value - outcome.receiver_flux_lm(0).value).abs() < 1e-9 * floor.value);
+//! # assert!(floor.value > 0.0 && outcome.ledger.is_balanced());
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! `examples/embed.rs` is a scene with glass in it. Constructors return [`Invalid`], readers [`Diagnostic`]s with file, line and
+//! column; nothing panics, exits or prints on data. `docs/METHOD.md` has the equations ("METHOD 3" in a comment is its section
+//! 3), `ARCHITECTURE.md` the rooms of the source and the reasons.
+//!
+//! # Features
+//!
+//! `cli` (default): the command `caustix`. `plots` (default): drawings, maps as PNG. Without either the library reads, traces
+//! and writes EXR, CSV, PLY and JSON.
+
+// What only the command uses is dead without it; the build with the command denies dead code.
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 
 // In import order: a room uses only rooms before it (tests/house checks).
 #[path = "."]
@@ -91,7 +97,7 @@ pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 pub use emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emits, Emitter, Isotropic, Panel, Photometric,
 };
-pub use files::scene_toml::read_scene;
+pub use files::scene_toml::{SceneFile, built_in as built_in_scene, read as read_scene_file, read_scene};
 pub use geometry::{
     Facing, Formula, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing, Sphere,
     Surface, Transform, Wave, box_mesh,
@@ -99,7 +105,7 @@ pub use geometry::{
 pub use scene::camera::{Camera, CameraSpec};
 pub use scene::receiver::{ReceiverEvents, ReceiverSide, ReceiverSpec};
 pub use scene::{Scene, SceneBuilder};
-pub use surface::{Dielectric, Material, Reflectance, Tabulated};
+pub use surface::{Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reflectance, Tabulated};
 // Runs:
 pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace};
 pub use sequence::Sequence;
@@ -117,6 +123,11 @@ pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
 pub use report::statistics::ReceiverStatistics;
 pub use report::text::summary;
+// Studies:
+pub use lab::certificate::{Certificate, Judge};
+pub use lab::study::cells::Grids;
+pub use lab::study::norms::Errors;
+pub use lab::study::reference::{Reference, ReferencePlan, trace_replicate as trace_reference};
 // Pictures:
 pub use picture::{AnyPicture, Picture, PictureSummary, Watch, trace_picture};
 

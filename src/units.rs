@@ -3,9 +3,6 @@
 //! Inside caustix lengths are metres, angles radians, flux lumens, intensity candela, illuminance lux. Degrees and
 //! feet exist only where files are read (names end in `_deg`, `_ft`).
 
-/// Luminous efficacy of monochromatic radiation of 540 THz, lm/W (SI definition of the candela, 2019).
-pub const K_CD_LM_W: f64 = 683.0;
-
 /// Luminance of a colour of linear RGB with the primaries of ITU-R BT.709: their relative luminances, 1 in all.
 pub const LUMINANCE_OF_RGB: [f64; 3] = [0.2126, 0.7152, 0.0722];
 

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
 
-use super::frame::{self, AimFrame};
-use super::{DirectLight, Emission, Emits};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
+use crate::geometry::COORDINATE;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 use crate::surface::lambertian::cosine_direction;
@@ -18,6 +18,11 @@ use crate::surface::lambertian::cosine_direction;
 ///
 /// To add one: a file that implements this, and its lines in [`super::Emitter`].
 pub trait LitShape: Copy {
+    /// As [`EmitterKind::noun`].
+    const NOUN: &'static str;
+    /// As [`EmitterKind::requires`].
+    const REQUIRES: (u8, &'static str);
+
     /// Pi times the area, m2 sr: flux over luminance.
     fn etendue_m2_sr(&self) -> f64;
 
@@ -37,12 +42,6 @@ pub trait LitShape: Copy {
     /// For a point over the place `foot`, `height_m` away from the plane: a place of the shape, and the reciprocal of the
     /// density (in solid angle) that it is drawn with, sr. `None` where a place uniform over the area serves better.
     fn sample_direction(&self, foot: [f64; 2], height_m: f64, u: [f64; 2]) -> Option<([f64; 2], f64)>;
-
-    /// As [`Emits::noun`].
-    fn noun(&self) -> &'static str;
-
-    /// As [`Emits::requires`].
-    fn requires(&self) -> (u8, &'static str);
 }
 
 /// A flat shape of constant luminance flux / (pi area).
@@ -61,7 +60,7 @@ impl<S: LitShape> AreaLight<S> {
     /// # Errors
     /// A position or flux out of range or not a number.
     pub fn new(centre: DVec3, frame: AimFrame, shape: S, flux_lm: f64) -> Result<Self, Invalid> {
-        let (centre, flux_lm) = (frame::place(centre)?, frame::flux(flux_lm)?);
+        let (centre, flux_lm) = (COORDINATE.vector("position", centre)?, FLUX.check("flux_lm", flux_lm)?);
         Ok(Self { centre, axes: frame.axes(), shape, flux_lm })
     }
 
@@ -101,7 +100,7 @@ impl<S: LitShape> Emits for AreaLight<S> {
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        let x = coordinates.remainder(u, Purpose::BeamPosition);
+        let x = coordinates.rest(u, Purpose::BeamPosition);
         let y = to_unit_f64(coordinates.draw(Purpose::BeamPosition));
         let u1 = to_unit_f64(coordinates.draw(Purpose::EmissionTheta));
         let u2 = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
@@ -149,20 +148,8 @@ impl<S: LitShape> Emits for AreaLight<S> {
         self.shape.outline().into_iter().map(|place| self.point(place)).collect()
     }
 
-    fn coordinates(&self) -> u32 {
-        4
-    }
-
     #[inline]
-    fn direct_coordinates(&self) -> u32 {
-        2
-    }
-
-    fn noun(&self) -> &'static str {
-        self.shape.noun()
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        self.shape.requires()
+    fn kind(&self) -> EmitterKind {
+        EmitterKind { coordinates: 4, direct_coordinates: 2, ..EmitterKind::new(S::NOUN, S::REQUIRES) }
     }
 }

@@ -8,12 +8,12 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::disc::{circle, unit_disc};
-use super::frame::{self, AimFrame, length};
 use super::panel::SQUARE;
-use super::{DirectLight, Emission, Emits};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
+use crate::geometry::{COORDINATE, LENGTH};
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 
@@ -52,18 +52,18 @@ impl Beam {
     /// A position, size or flux out of range or not a number.
     pub fn new(centre: DVec3, frame: AimFrame, section: BeamSection, flux_lm: f64) -> Result<Self, Invalid> {
         let ([x, y], is_round) = match section {
-            BeamSection::Disc { radius } => ([length("radius", radius)?; 2], true),
+            BeamSection::Disc { radius } => ([LENGTH.check("radius", radius)?; 2], true),
             BeamSection::Rectangle { width, height } => {
-                ([0.5 * length("size", width)?, 0.5 * length("size", height)?], false)
+                ([0.5 * LENGTH.check("size", width)?, 0.5 * LENGTH.check("size", height)?], false)
             }
         };
         let axes = frame.axes();
         Ok(Self {
-            centre: frame::place(centre)?,
+            centre: COORDINATE.vector("position", centre)?,
             direction: frame.aim(),
             half_axes: [axes.x_axis * x, axes.y_axis * y],
             is_round,
-            flux_lm: frame::flux(flux_lm)?,
+            flux_lm: FLUX.check("flux_lm", flux_lm)?,
         })
     }
 
@@ -91,7 +91,7 @@ impl Emits for Beam {
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        let u1 = coordinates.remainder(u, Purpose::BeamPosition);
+        let u1 = coordinates.rest(u, Purpose::BeamPosition);
         let u2 = to_unit_f64(coordinates.draw(Purpose::BeamPosition));
         let [a, b] = if self.is_round { unit_disc([u1, u2]) } else { [2.0 * u1 - 1.0, 2.0 * u2 - 1.0] };
         let [x, y] = self.half_axes;
@@ -118,16 +118,9 @@ impl Emits for Beam {
         ring.into_iter().map(|[a, b]| self.centre + x * a + y * b).collect()
     }
 
-    fn may_touch(&self) -> bool {
-        true
-    }
-
-    fn noun(&self) -> &'static str {
-        "beam"
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        (2, "collimated emission")
+    #[inline]
+    fn kind(&self) -> EmitterKind {
+        EmitterKind { may_touch: true, ..EmitterKind::new("beam", (2, "collimated emission")) }
     }
 }
 

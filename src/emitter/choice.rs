@@ -2,7 +2,7 @@
 
 use super::{Emission, Emits, Emitter};
 use crate::error::Invalid;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::discrete::Discrete;
 use crate::sample::method::Sampling;
 use crate::sequence::Points;

@@ -6,8 +6,8 @@
 use std::f64::consts::PI;
 
 use super::area::LitShape;
-use super::frame::length;
 use crate::error::Invalid;
+use crate::geometry::LENGTH;
 use crate::math::trig::sin_cos;
 
 /// Corners of the polygon that stands for a circle: 0.12 % of the radius within it.
@@ -42,11 +42,14 @@ impl Disc {
     /// # Errors
     /// A radius out of range or not a number.
     pub fn new(radius_m: f64) -> Result<Self, Invalid> {
-        Ok(Self { radius_m: length("radius", radius_m)? })
+        Ok(Self { radius_m: LENGTH.check("radius", radius_m)? })
     }
 }
 
 impl LitShape for Disc {
+    const NOUN: &'static str = "disc";
+    const REQUIRES: (u8, &'static str) = (4, "disc emission");
+
     fn etendue_m2_sr(&self) -> f64 {
         PI * PI * self.radius_m * self.radius_m
     }
@@ -96,14 +99,6 @@ impl LitShape for Disc {
         let [x, y] = if off_axis > 0.0 { foot.map(|f| -f / off_axis) } else { [1.0, 0.0] };
         let place = [foot[0] + t * (cos * x - sin * y), foot[1] + t * (cos * y + sin * x)];
         Some((place, 2.0 * widest * (to - from)))
-    }
-
-    fn noun(&self) -> &'static str {
-        "disc"
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        (4, "disc emission")
     }
 }
 

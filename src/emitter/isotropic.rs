@@ -6,11 +6,12 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{DirectLight, Emission, Emits, frame};
+use super::{DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
+use crate::geometry::COORDINATE;
 use crate::math::trig::sin_cos;
 use crate::sample::choose::Reusable;
-use crate::sample::coordinates::{Coordinates, Purpose};
+use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 
@@ -27,7 +28,10 @@ impl Isotropic {
     /// # Errors
     /// A position or flux out of range or not a number.
     pub fn new(position: DVec3, flux_lm: f64) -> Result<Self, Invalid> {
-        Ok(Self { position: frame::place(position)?, flux_lm: frame::flux(flux_lm)? })
+        Ok(Self {
+            position: COORDINATE.vector("position", position)?,
+            flux_lm: FLUX.check("flux_lm", flux_lm)?,
+        })
     }
 }
 
@@ -48,7 +52,7 @@ impl Emits for Isotropic {
         u: Reusable,
         coordinates: &mut Coordinates<'_, P>,
     ) -> Option<Emission> {
-        let u1 = coordinates.remainder(u, Purpose::EmissionTheta);
+        let u1 = coordinates.rest(u, Purpose::EmissionTheta);
         let u2 = to_unit_f64(coordinates.draw(Purpose::EmissionPhi));
         let cos_theta = 1.0 - 2.0 * u1;
         // sin^2 = 4 u (1 - u): no cancellation towards either pole.
@@ -61,7 +65,8 @@ impl Emits for Isotropic {
         DirectLight::from_point(self.position, point, |_| self.flux_lm / (4.0 * PI))
     }
 
-    fn requires(&self) -> (u8, &'static str) {
-        (1, "isotropic emission")
+    #[inline]
+    fn kind(&self) -> EmitterKind {
+        EmitterKind::new("point", (1, "isotropic emission"))
     }
 }

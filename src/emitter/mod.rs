@@ -79,6 +79,28 @@ impl DirectLight {
     }
 }
 
+/// What holds for all emitters of a kind.
+#[derive(Debug, Clone, Copy)]
+pub struct EmitterKind {
+    /// What messages call it.
+    pub noun: &'static str,
+    /// What a scene with it requires, as `caustix check` says it, and the rank of that word in the list.
+    pub requires: (u8, &'static str),
+    /// Continuous coordinates of a start: two for a direction or a place, four for both.
+    pub coordinates: u32,
+    /// Continuous coordinates of [`Emits::direct_light`].
+    pub direct_coordinates: u32,
+    /// Whether its middle may lie on a surface, because all of its light leaves that to one side.
+    pub may_touch: bool,
+}
+
+impl EmitterKind {
+    /// Of a point.
+    const fn new(noun: &'static str, requires: (u8, &'static str)) -> Self {
+        Self { noun, requires, coordinates: 2, direct_coordinates: 0, may_touch: false }
+    }
+}
+
 /// The contract of an emitter.
 pub trait Emits {
     /// Luminous flux, lm.
@@ -116,28 +138,8 @@ pub trait Emits {
         None
     }
 
-    /// Continuous coordinates of a start: two for a direction or a place, four for both.
-    fn coordinates(&self) -> u32 {
-        2
-    }
-
-    /// Continuous coordinates of [`Self::direct_light`].
-    fn direct_coordinates(&self) -> u32 {
-        0
-    }
-
-    /// Whether its middle may lie on a surface, because all of its light leaves that to one side.
-    fn may_touch(&self) -> bool {
-        false
-    }
-
-    /// What messages call it.
-    fn noun(&self) -> &'static str {
-        "emitter"
-    }
-
-    /// What a scene with it requires, as `caustix check` says it, and the rank of that word in the list.
-    fn requires(&self) -> (u8, &'static str);
+    /// What holds for all emitters of its kind.
+    fn kind(&self) -> EmitterKind;
 }
 
 /// Everything that can emit.
@@ -203,25 +205,9 @@ impl Emits for Emitter {
         each!(self, e => e.table())
     }
 
-    fn coordinates(&self) -> u32 {
-        each!(self, e => e.coordinates())
-    }
-
     #[inline]
-    fn direct_coordinates(&self) -> u32 {
-        each!(self, e => e.direct_coordinates())
-    }
-
-    fn may_touch(&self) -> bool {
-        each!(self, e => e.may_touch())
-    }
-
-    fn noun(&self) -> &'static str {
-        each!(self, e => e.noun())
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        each!(self, e => e.requires())
+    fn kind(&self) -> EmitterKind {
+        each!(self, e => e.kind())
     }
 }
 

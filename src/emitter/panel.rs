@@ -6,9 +6,9 @@
 use std::f64::consts::PI;
 
 use super::area::LitShape;
-use super::frame::length;
 use super::spherical_rectangle::SphericalRectangle;
 use crate::error::Invalid;
+use crate::geometry::LENGTH;
 
 /// Solid angle, sr, from which on a panel is sampled by it: four angles that sum to it are each right to some 1e-15.
 const LEAST_SOLID_ANGLE: f64 = 1e-3;
@@ -29,7 +29,7 @@ impl Panel {
     /// # Errors
     /// A size out of range or not a number.
     pub fn new([width, height]: [f64; 2]) -> Result<Self, Invalid> {
-        Ok(Self { size_m: [length("size", width)?, length("size", height)?] })
+        Ok(Self { size_m: [LENGTH.check("size", width)?, LENGTH.check("size", height)?] })
     }
 
     /// The place at x and y in halves of the size: -1 to 1.
@@ -46,6 +46,9 @@ impl Panel {
 }
 
 impl LitShape for Panel {
+    const NOUN: &'static str = "panel";
+    const REQUIRES: (u8, &'static str) = (3, "panel emission");
+
     #[inline]
     fn etendue_m2_sr(&self) -> f64 {
         PI * self.size_m[0] * self.size_m[1]
@@ -80,14 +83,6 @@ impl LitShape for Panel {
             let place = self.at([x + 2.0 * offset[0] / width, y + 2.0 * offset[1] / height]);
             (place, rectangle.solid_angle_sr())
         })
-    }
-
-    fn noun(&self) -> &'static str {
-        "panel"
-    }
-
-    fn requires(&self) -> (u8, &'static str) {
-        (3, "panel emission")
     }
 }
 

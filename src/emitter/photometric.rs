@@ -15,9 +15,10 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::{AimFrame, DirectLight, Emission, Emits, frame};
+use super::{AimFrame, DirectLight, Emission, Emits, EmitterKind, FLUX};
 use crate::error::Invalid;
 use crate::error::invalid::positive;
+use crate::geometry::COORDINATE;
 use crate::math::frame::frame_from_axis;
 use crate::photometry::Photometry;
 use crate::photometry::web::PhotometricType;
@@ -25,7 +26,7 @@ use crate::sample::choose::Reusable;
 use crate::sample::coordinates::Coordinates;
 use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
-use crate::sample::rejection::UniformMap;
+use crate::sample::uniform_map::UniformMap;
 use crate::sequence::Points;
 
 /// A photometric point emitter.
@@ -81,11 +82,11 @@ impl Photometric {
         let full = photometry.web.full_grid();
         let grid = Grid::new(&full.polar_rad, &full.azimuth_rad, &full.intensity_cd).map_err(of_file)?;
         let flux_lm = match flux_lm {
-            Some(flux_lm) => frame::flux(flux_lm)?,
+            Some(flux_lm) => FLUX.check("flux_lm", flux_lm)?,
             None => positive("flux_lm", grid.integral() * photometry.factor(), "a file of positive flux")?,
         };
         let axes = grid_axes(photometry.web.photometric_type, frame)?;
-        let (scale, position) = (flux_lm / grid.integral(), frame::place(position)?);
+        let (scale, position) = (flux_lm / grid.integral(), COORDINATE.vector("position", position)?);
         Ok(Self { grid: Arc::new(grid), axes, position, flux_lm, scale, uniform: None })
     }
 
@@ -143,7 +144,8 @@ impl Emits for Photometric {
         Some(&self.grid)
     }
 
-    fn requires(&self) -> (u8, &'static str) {
-        (0, "photometric table")
+    #[inline]
+    fn kind(&self) -> EmitterKind {
+        EmitterKind::new("point", (0, "photometric table"))
     }
 }

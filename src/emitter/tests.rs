@@ -13,7 +13,7 @@ pub fn starts(emitter: &impl Emits, n: u64, coordinates: u32) -> impl Iterator<I
         let mut c = Coordinates::new(&points, i, true);
         let u = c.draw_reusable(Purpose::Emission);
         let emission = emitter.emit(Sampling::default(), u, &mut c).unwrap();
-        assert_eq!((c.drawn(), emitter.coordinates()), (coordinates, coordinates));
+        assert_eq!((c.drawn(), emitter.kind().coordinates), (coordinates, coordinates));
         emission
     })
 }

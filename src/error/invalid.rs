@@ -187,6 +187,12 @@ impl Interval {
     }
 }
 
+impl From<Invalid> for Vec<Diagnostic> {
+    fn from(invalid: Invalid) -> Self {
+        vec![invalid.into()]
+    }
+}
+
 /// A number from `low` to `high`, both included.
 ///
 /// # Errors

@@ -170,6 +170,13 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
+/// One error where a caller collects all of them: `?` works where a scene is built.
+impl From<Diagnostic> for Vec<Diagnostic> {
+    fn from(error: Diagnostic) -> Self {
+        vec![error]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

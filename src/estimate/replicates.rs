@@ -1,14 +1,15 @@
 //! Standard errors from independent replicates (METHOD 7).
 //!
-//! A run traces R sets of n = N / R points under independent randomisations. A count summed over the replicates has the
-//! standard error sqrt(R s^2), s^2 the variance of the R counts with R - 1 degrees of freedom. A cell with fewer than 10
-//! hits in all, whose spread says nothing, gets the Poisson error of (hits + 1) instead, so it is never 0.
+//! A run traces R sets of n = N / R points under independent randomisations. A count summed over the
+//! replicates has the standard error sqrt(R s^2), s^2 the variance of the R counts with R - 1 degrees of
+//! freedom. A cell with fewer than 10 hits in all, whose spread says nothing, gets the Poisson error of (hits
+//! + 1) instead, so it is never 0.
 
 /// Hits below which a cell's own spread is not used.
 pub const FEWEST_HITS: u64 = 10;
 
-/// Standard error of a count summed over `replicates` replicates, in photons, for a cell; `None` for one replicate: the
-/// points of one set are not independent and say nothing about their error.
+/// Standard error of a count summed over `replicates` replicates, in photons, for a cell; `None` for one
+/// replicate: the points of one set are not independent and say nothing about their error.
 #[inline]
 pub fn standard_error_of_cell(sum: u64, square: u128, replicates: u32) -> Option<f64> {
     if replicates < 2 {
@@ -20,15 +21,16 @@ pub fn standard_error_of_cell(sum: u64, square: u128, replicates: u32) -> Option
     standard_error_of_total(sum, square, replicates)
 }
 
-/// The same for a total, where the spread is used whatever the number of hits.
+/// Standard error of a total over `replicates` replicates, in photons: from the spread, whatever the number
+/// of hits.
 #[inline]
 pub fn standard_error_of_total(sum: u64, square: u128, replicates: u32) -> Option<f64> {
     let r = u128::from(replicates);
     if r < 2 {
         return None;
     }
-    // R s^2 = (R sum of squares - square of the sum) / (R - 1), the difference exact in integers. It overflows only
-    // beyond 2^64 photons; saturation keeps that from wrapping.
+    // R s^2 = (R sum of squares - square of the sum) / (R - 1), the difference exact in integers. It
+    // overflows only beyond 2^64 photons; saturation keeps that from wrapping.
     let spread = r.saturating_mul(square).saturating_sub(u128::from(sum) * u128::from(sum));
     Some((spread as f64 / (r - 1) as f64).sqrt())
 }
@@ -46,6 +48,23 @@ mod tests {
         let variance = counts.iter().map(|c| (*c as f64 - mean).powi(2)).sum::<f64>() / 4.0;
         let expected = (5.0 * variance).sqrt();
         assert!((standard_error_of_cell(sum, square, 5).unwrap() - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn errors_by_hand() {
+        // Counts 3 and 7: s^2 = 8, R s^2 = 16. Counts 1, 2, 3, 6: s^2 = 14 / 3, R s^2 = 56 / 3.
+        assert_eq!(standard_error_of_cell(10, 58, 2), Some(4.0));
+        assert_eq!(standard_error_of_cell(12, 50, 4), Some((56.0f64 / 3.0).sqrt()));
+        assert_eq!(standard_error_of_total(12, 50, 4), standard_error_of_cell(12, 50, 4));
+        // From ten hits on the spread counts, whatever it is; of totals always.
+        assert_eq!(standard_error_of_cell(9, 81, 2), Some(10.0f64.sqrt()));
+        assert_eq!(standard_error_of_total(9, 81, 2), Some(9.0));
+        assert_eq!(standard_error_of_cell(10, 50, 2), Some(0.0));
+        assert_eq!(standard_error_of_total(9, 81, 1), None);
+        // 2^48 photons in one of 2^16 replicates: exact in 128 bits; beyond, saturated and not wrapped.
+        let whole = standard_error_of_total(1 << 48, 1 << 96, 1 << 16).unwrap();
+        assert_eq!(whole, (1u64 << 48) as f64);
+        assert!(standard_error_of_total(u64::MAX, u128::MAX, 1 << 16).unwrap() > 0.0);
     }
 
     #[test]

@@ -29,11 +29,13 @@ pub enum Base {
 pub(crate) struct Files {
     base: Base,
     read: Vec<(String, Rc<[u8]>)>,
+    /// Index into `read` of each use.
+    uses: Vec<usize>,
 }
 
 impl Files {
     pub(crate) fn new(base: Base) -> Self {
-        Self { base, read: Vec::new() }
+        Self { base, read: Vec::new(), uses: Vec::new() }
     }
 
     /// Where this path, as written in the scene, leads to; the path itself for a file inside the program.
@@ -46,13 +48,15 @@ impl Files {
 
     /// The bytes of the file of this name, at most [`FILE_LIMIT_BYTES`].
     pub(crate) fn load(&mut self, name: &str) -> Result<Rc<[u8]>> {
-        if let Some((_, bytes)) = self.read.iter().find(|(known, _)| known == name) {
-            return Ok(Rc::clone(bytes));
+        if let Some(known) = self.read.iter().position(|(known, _)| known == name) {
+            self.uses.push(known);
+            return Ok(Rc::clone(&self.read[known].1));
         }
         let bytes: Rc<[u8]> = match self.base {
             Base::Directory(_) => read_capped(&self.path(name), FILE_LIMIT_BYTES)?.into(),
             Base::BuiltIn => built_in_file(name)?.into(),
         };
+        self.uses.push(self.read.len());
         self.read.push((name.to_owned(), Rc::clone(&bytes)));
         Ok(bytes)
     }
@@ -65,9 +69,10 @@ impl Files {
         }
     }
 
-    /// (name, SHA-256) of what was read, in the order of the first use.
+    /// (name, SHA-256) of what was read, once for each part of the scene that names it, in their order.
     pub(crate) fn hashes(&self) -> Vec<(String, String)> {
-        self.read.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect()
+        let read: Vec<_> = self.read.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect();
+        self.uses.iter().map(|k| read[*k].clone()).collect()
     }
 }
 
@@ -144,6 +149,7 @@ mod tests {
         assert_eq!(&*files.load("a.bin").unwrap(), b"first");
         std::fs::write(&path, "second").unwrap();
         assert_eq!(&*files.load("a.bin").unwrap(), b"first");
-        assert_eq!(files.hashes(), [("a.bin".to_owned(), sha256_hex(b"first"))]);
+        let both = ("a.bin".to_owned(), sha256_hex(b"first"));
+        assert_eq!(files.hashes(), [both.clone(), both]);
     }
 }

@@ -45,6 +45,16 @@ pub enum Value {
 /// Most pixels of a file.
 const MOST_PIXELS: usize = 1 << 28;
 
+/// What a file's numbers are to a viewer of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Light {
+    /// Channels `R`, `G`, `B` (or `Y`) of linear sRGB in cd/m2: with `chromaticities` (those of ITU-R BT.709) and
+    /// `whiteLuminance` = 1, the luminance of (1, 1, 1) in cd/m2.
+    Luminance,
+    /// Any other numbers.
+    Other,
+}
+
 /// Writes channels of `width` x `height` values, first row on top, with these attributes.
 ///
 /// # Errors
@@ -52,40 +62,14 @@ const MOST_PIXELS: usize = 1 << 28;
 /// twice or used by the format itself; [`Kind::Io`] when the file cannot be written.
 pub fn write_maps(
     path: impl AsRef<Path>,
-    width: usize,
-    height: usize,
+    [width, height]: [usize; 2],
     channels: &[Channel<'_>],
     attributes: &[(String, Value)],
+    light: Light,
 ) -> Result<()> {
     let path = path.as_ref();
-    let bytes = encode(width, height, channels, attributes, Light::Other).map_err(|e| e.in_file(path))?;
+    let bytes = encode(width, height, channels, attributes, light).map_err(|e| e.in_file(path))?;
     write_atomically(path, |writer| writer.write_all(&bytes))
-}
-
-/// The same for a picture whose channels `R`, `G`, `B` (or `Y`) are in cd/m2, with the format's own attributes for that:
-/// `chromaticities` (those of ITU-R BT.709, which are sRGB's) and `whiteLuminance` = 1, the luminance of (1, 1, 1) in cd/m2.
-///
-/// # Errors
-/// As [`write_maps`].
-pub fn write_luminance(
-    path: impl AsRef<Path>,
-    width: usize,
-    height: usize,
-    channels: &[Channel<'_>],
-    attributes: &[(String, Value)],
-) -> Result<()> {
-    let path = path.as_ref();
-    let bytes = encode(width, height, channels, attributes, Light::Luminance).map_err(|e| e.in_file(path))?;
-    write_atomically(path, |writer| writer.write_all(&bytes))
-}
-
-/// What a file's numbers are to a viewer of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Light {
-    /// Linear sRGB in cd/m2.
-    Luminance,
-    /// Any other numbers.
-    Other,
 }
 
 /// Red, green, blue and white of ITU-R BT.709 in CIE 1931 x, y.
@@ -261,7 +245,7 @@ mod tests {
             Channel { name: "hits", data: Data::U32(&hits) },
             Channel { name: "illuminance", data: Data::F32(&lux) },
         ];
-        write_maps(&path, width, height, &channels, &attributes()).unwrap();
+        write_maps(&path, [width, height], &channels, &attributes(), Light::Other).unwrap();
         let maps = read_maps(&path).unwrap();
         assert_eq!((maps.width, maps.height), (width, height));
         let names: Vec<&str> = maps.channels.iter().map(|(name, _)| name.as_str()).collect();

@@ -36,7 +36,6 @@ pub use coincident::coincident_surfaces;
 pub use height_image::HeightImage;
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, HEIGHT, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
-pub use mesh_check::Topology;
 pub use noise::{MOST_OCTAVES, Noise, Octave, PEAK, RELATIVE};
 pub use paraboloid::Paraboloid;
 pub use rectangle::Rectangle;

@@ -3,18 +3,13 @@
 //! The two differ by up to a per cent for coarse tables. The first is the number on data sheets (AGi32 Photometric
 //! Toolbox); the second is what photons carry that are emitted by bilinear interpolation.
 
-use super::{FullGrid, Photometry, Web};
+use super::{FullGrid, Web};
 
 /// Flux in lm of `value x multiplier`, as the lighting industry integrates it: over V the mean of neighbouring
 /// candela times the exact solid angle between them (C: cos V1 - cos V2; A: sin V2 - sin V1; B: the same over H),
 /// over the other angle the trapezoid. No ballast factor, no field 12.
 pub fn flux_lm(web: &Web) -> f64 {
     trapezoid_lm(&web.full_grid())
-}
-
-/// Flux in lm of what the luminaire emits: the bilinear table integrated exactly, times [`Photometry::factor`].
-pub fn flux_emitted_lm(photometry: &Photometry) -> f64 {
-    bilinear_lm(&photometry.web.full_grid()) * photometry.factor()
 }
 
 /// The industry's trapezoid over an unfolded grid, lm.

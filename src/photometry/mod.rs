@@ -13,10 +13,10 @@ pub mod summary;
 pub mod unfold;
 pub mod web;
 
-pub use opening::{LuminousOpening, OpeningShape};
+pub use opening::LuminousOpening;
 pub use summary::Summary;
 pub use unfold::FullGrid;
-pub use web::{PhotometricType, Symmetry, Web};
+pub use web::{PhotometricType, Web};
 
 use crate::error::Diagnostic;
 

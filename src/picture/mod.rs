@@ -1,11 +1,15 @@
-//! A run with a camera: receivers as without one, and the picture.
+//! Pictures: all that a camera needs. The receivers of a run with a camera count what they do without one.
 //!
-//! By the photon map: photons are kept while there is room for them; what is kept is made into two densities, that of
-//! light that no surface scattered before (L S+ D) and that of all other, the camera adds what it sees of both to its sums,
-//! and the photons are dropped: a pass. By splatting: every arrival is joined to the pinhole while it is traced.
+//! Two methods. `map`: photons are kept where they arrive, up to the camera's memory; their density,
+//! estimated where eye paths end, makes pixels; then they are dropped and the next ones are traced (a pass).
+//! `splat`: each arrival is joined to the pinhole while it is traced, without a density.
 //!
-//! What the picture stands for are the ranges of photons that were traced wholly: all of them, or after an interrupt
-//! those until then.
+//! [`trace_picture`] traces and makes the picture, [`picture_of_saved`] makes one of saved photons. After an
+//! interrupt a picture is of the photons traced until then, in whole ranges of indices.
+//!
+//! The files in the order of use: [`photon_map`] keeps and finds photons; [`gather`] estimates luminance from
+//! them, with error and bias; [`camera`] turns pixels into rays and what they find into a film; [`summary`]
+//! says how good it is; [`passes`] leads photons of a run through all of these.
 
 pub mod photon_map;
 pub mod gather;
@@ -25,18 +29,19 @@ use crate::surface::{Grey, Rgb};
 
 use camera::splat::Splat;
 use camera::{Film, View, film};
-use passes::collector::{Collector, capacity};
+use passes::budget::capacity;
+use passes::collector::Collector;
 use photon_map::{Channels, SavedMap};
 pub use summary::{Chosen, PictureSummary};
 
-/// What a camera saw.
+/// A picture of `C` channels: 1 or 3.
 #[derive(Debug)]
 pub struct Picture<const C: usize> {
-    /// Its pixels.
+    /// Its pixels, with standard error and bias, cd/m2.
     pub film: Film<C>,
     /// How it was made, and how good it is.
     pub summary: PictureSummary,
-    /// The photons it was made of, in a fixed order, where they were asked for.
+    /// The photons it was made of, in an order that does not depend on threads, where they were asked for.
     pub photons: Option<SavedMap<C>>,
 }
 
@@ -59,19 +64,19 @@ impl AnyPicture {
     }
 }
 
-/// What a run does beside tracing.
+/// How a run is watched and stopped.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     /// Set from outside to stop.
     pub interrupt: &'a AtomicBool,
-    /// Told numbers of photons as they are done.
+    /// Told the number of photons after each batch.
     pub photons: &'a (dyn Fn(u64) + Sync),
-    /// Told the part of the camera's work that is done in a pass, 0 to 1.
+    /// Told which part of a pass's pixels is done, 0 to 1.
     pub camera: &'a (dyn Fn(f64) + Sync),
 }
 
-/// What photons depend on: the scene but for its camera, the files it names, and the run's settings. Maps of other
-/// photons have another hash.
+/// What photons depend on: the scene but for its camera, the files it names, and the run's settings. Maps of
+/// other photons have another hash.
 pub fn hash_of_photons(scene: &Scene, plan: &Plan) -> String {
     let mut all = format!("{}\n{}\n", env!("CARGO_PKG_VERSION"), settings_of(plan));
     all += &scene.identity.light;
@@ -112,7 +117,8 @@ pub fn memory_bytes(camera: &Camera, is_coloured: bool) -> u64 {
     }
 }
 
-/// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene without one passes.
+/// What cannot be done with the camera of a scene, told before anything is allocated or traced. A scene
+/// without one passes.
 ///
 /// # Errors
 /// A picture that takes more memory than pictures may; a camera that sees nothing (on a surface).
@@ -122,12 +128,12 @@ pub fn check(scene: &Scene) -> Result<()> {
     View::new(scene, camera, 0).map(|_| ())
 }
 
-/// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is that of
-/// [`crate::run::trace`]. With `keep` the picture's photons are handed out too.
+/// Traces a scene with a camera by a plan, on the current rayon pool, and makes its picture. The outcome is
+/// that of [`crate::run::trace`]. With `keep` the picture's photons are handed out too.
 ///
 /// # Errors
-/// Those of [`crate::run::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a surface); `keep` and more
-/// photons than the camera's memory holds.
+/// Those of [`crate::run::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a
+/// surface); `keep` and more photons than the camera's memory holds.
 pub fn trace_picture(
     scene: &Scene,
     plan: &Plan,
@@ -171,8 +177,8 @@ fn with_channels<const C: usize, T: Channels<C>>(
 /// Whether a scene's camera can see photons that another run saved; told before anything is made of them.
 ///
 /// # Errors
-/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not have; more than the
-/// camera's memory holds.
+/// No camera, one that [`check`] refuses, or one that splats; photons of a surface that the scene does not
+/// have; more than the camera's memory holds.
 pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result<()> {
     let camera = camera_of(scene)?;
     check(scene)?;

@@ -41,7 +41,8 @@ pub struct PictureSummary {
     /// Replicates they belong to.
     #[serde(skip)]
     pub replicates: u32,
-    /// Photons that were kept on surfaces, all passes together; for a splat the arrivals that reached a pixel.
+    /// Photons that were kept on surfaces, all passes together; for a splat the arrivals that reached a
+    /// pixel.
     pub photons_kept: u64,
     /// Passes that memory made necessary.
     pub passes: u32,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
-use crate::files::exr::{Channel, Data, write_maps};
+use crate::files::exr::{Channel, Data, Light, write_maps};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
@@ -52,7 +52,13 @@ pub fn write_exr(
         Channel { name: "standard_error", data: Data::F32(&error) },
         Channel { name: "hits", data: Data::U32(&hits) },
     ];
-    write_maps(path, width, height, &channels, &attributes(scene, outcome, receiver, statistics))
+    write_maps(
+        path,
+        [width, height],
+        &channels,
+        &attributes(scene, outcome, receiver, statistics),
+        Light::Other,
+    )
 }
 
 /// Writes a receiver's faces as CSV, one row a face: number, centroid (m), area (m2), illuminance and standard error (lx,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::exr::{Channel, Data, Value, write_luminance};
+use crate::files::exr::{Channel, Data, Light, Value, write_maps};
 use crate::picture::camera::Film;
 use crate::run::Plan;
 use crate::scene::Scene;
@@ -47,7 +47,7 @@ pub fn write_exr<const C: usize>(
     channels.push(Channel { name: "standard_error", data: Data::F32(&error) });
     channels.push(Channel { name: "bias", data: Data::F32(&bias) });
     let attributes = [attributes, &picture_attributes(&tone(spec, film))].concat();
-    write_luminance(path, width, height, &channels, &attributes)
+    write_maps(path, film.pixels.map(|n| n as usize), &channels, &attributes, Light::Luminance)
 }
 
 fn picture_attributes(tone: &Tone) -> Vec<(String, Value)> {

@@ -14,7 +14,7 @@ pub enum Variant {
     Qmc,
     /// Sobol' points and inverse functions; every choice draws its own coordinate.
     QmcInverse,
-    /// The same with renormalisation: discrete events share a coordinate. The default.
+    /// Inverse functions with renormalisation: discrete events share a coordinate. The default.
     QmcInverseReuse,
 }
 
@@ -77,17 +77,16 @@ impl Default for Algorithm {
 }
 
 impl From<Variant> for Algorithm {
-    /// The paper's variant: on its sequence, with the secant method where it inverts, rejecting inside the cell where it
-    /// rejects.
+    /// The paper's variant: on its sequence, with the secant method where it inverts, rejecting inside the
+    /// cell where it rejects.
     fn from(variant: Variant) -> Self {
         Self { variant, sequence: variant.sequence(), rejection: Rejection::default(), solver: Solver::PAPER }
     }
 }
 
 impl Algorithm {
-    /// What a variant's name with qualifiers says: `qmc`, `qmc:table`, `qmc:next-point`, `qmc-inverse:halton:newton`.
-    /// Qualifiers are a sequence, a way of rejection and a solver,
-    /// in any order.
+    /// What a variant's name with qualifiers says: `qmc`, `qmc:table`, `qmc:next-point`,
+    /// `qmc-inverse:halton:newton`. Qualifiers are a sequence, a way of rejection and a solver, in any order.
     ///
     /// # Errors
     /// An unknown name, and a qualifier of rejection on a variant that rejects nothing.
@@ -156,11 +155,12 @@ impl Algorithm {
         format!("{}; {sampling}{coordinates}", self.sequence.name())
     }
 
-    /// Whether rejection that goes on with the next point can be right, where there is one emitter only or more.
+    /// Whether rejection that goes on with the next point can be right, where there is one emitter only or
+    /// more.
     ///
     /// # Errors
-    /// Such a rejection on a sequence that ends after N points, and with several emitters: the next point chooses the
-    /// emitter anew, so that they would come out by flux times chance of acceptance.
+    /// Such a rejection on a sequence that ends after N points, and with several emitters: the next point
+    /// chooses the emitter anew, so that they would come out by flux times chance of acceptance.
     pub fn check_skipping(&self, one_emitter: bool) -> Result<()> {
         let required = match (self.sampling().skips_points(), self.sequence.needs_number(), one_emitter) {
             (true, true, _) => {

@@ -1,10 +1,11 @@
 //! A whole run: a scene and settings in, sums and their spread out.
 //!
-//! [`Settings`] are made a [`Plan`]; [`trace`] traces its R replicates of n photons one after another, each over all threads;
-//! [`Outcome`] keeps of each receiver and account only the sum and the sum of squares over replicates.
+//! [`Settings`] are made a [`Plan`]; [`trace`] traces its R replicates of n photons one after another, each
+//! over all threads; [`Outcome`] keeps of each receiver and account only the sum and the sum of squares over
+//! replicates.
 //!
-//! A picture is made by the same run: [`trace_by`] hands it the [`Tracer`] stage by stage. That function is all that the two know
-//! of each other.
+//! A picture is made by the same run: [`trace_by`] hands it the [`Tracer`] stage by stage. That function is
+//! all that the two know of each other.
 
 pub mod algorithm;
 pub mod plan;

@@ -13,13 +13,13 @@ use super::plan::Plan;
 pub enum StoppedBy {
     /// All photons are traced.
     Photons,
-    /// It was interrupted; what is here are the replicates finished by then, or, before the first was, the first 2^m
-    /// photons of it.
+    /// It was interrupted; what is here are the replicates finished by then, or, before the first was, the
+    /// first 2^m photons of it.
     Interrupt,
 }
 
-/// What a run found: counts of photons by cell and account, from which [`Outcome::illuminance_lx`] and the others make numbers with
-/// their errors.
+/// What a run found: counts of photons by cell and account, from which [`Outcome::illuminance_lx`] and the
+/// others make numbers with their errors.
 #[derive(Debug, Clone)]
 pub struct Outcome {
     /// What was asked for.

@@ -12,12 +12,12 @@ use super::outcome::{Outcome, StoppedBy};
 use super::plan::Plan;
 use super::tracer::Tracer;
 
-/// Traces a scene by a plan, on the current rayon pool. Setting `interrupt` ends the run early; `progress` is told
-/// numbers of photons as they are done.
+/// Traces a scene by a plan, on the current rayon pool. Setting `interrupt` ends the run early; `progress` is
+/// told numbers of photons as they are done.
 ///
 /// # Errors
-/// Interrupted before any photon was traced; a ledger that does not balance (a defect of the program, never of the
-/// data).
+/// Interrupted before any photon was traced; a ledger that does not balance (a defect of the program, never
+/// of the data).
 pub fn trace(
     scene: &Scene,
     plan: &Plan,
@@ -34,10 +34,11 @@ pub fn trace(
 
 /// A run whose photons go through other hands: [`trace`] for pictures.
 ///
-/// `stage(tracer, end, receivers)` is called for each range of photons in turn, replicate by replicate ([`Tracer::replicate`]). It
-/// takes the tracer on to photon number `end` ([`Tracer::trace_into`], in as many steps as it likes), adds every arrival to
-/// `receivers` once, and gives what the steps traced. Where that is not complete (an interrupt) the run ends without it: of the
-/// first replicate the stages before it count, of any other none.
+/// `stage(tracer, end, receivers)` is called for each range of photons in turn, replicate by replicate
+/// ([`Tracer::replicate`]). It takes the tracer on to photon number `end` ([`Tracer::trace_into`], in as many
+/// steps as it likes), adds every arrival to `receivers` once, and gives what the steps traced. Where that is
+/// not complete (an interrupt) the run ends without it: of the first replicate the stages before it count, of
+/// any other none.
 ///
 /// # Errors
 /// Those of [`trace`] and of `stage`.
@@ -98,11 +99,37 @@ fn first_stage(plan: &Plan) -> u64 {
 
 /// The numbers of photons at which the tracing of a replicate pauses.
 ///
-/// Within a range the order follows the first coordinate, so a part of it is a part of the emitter's directions, not a
-/// sample of them. The first replicate is therefore traced in ranges that double what there is: each end is that of a
-/// net of 2^m points, and an interrupted run falls back on the last. Later replicates count only as a whole.
+/// Within a range the order follows the first coordinate, so a part of it is a part of the emitter's
+/// directions, not a sample of them. The first replicate is therefore traced in ranges that double what there
+/// is: each end is that of a net of 2^m points, and an interrupted run falls back on the last. Later
+/// replicates count only as a whole.
 fn stages(plan: &Plan, replicate: u32) -> Vec<u64> {
     let n = plan.photons_per_replicate();
     let first = if replicate == 0 { first_stage(plan) } else { n };
     std::iter::successors(Some(first), |end| (*end < n).then(|| n.min(2 * end))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Algorithm, Settings};
+    use crate::sequence::Sequence;
+
+    #[test]
+    fn the_first_replicate_doubles_and_the_others_are_traced_whole() {
+        let plan = |n: u64, sequence: Sequence| {
+            let algorithm = Algorithm { sequence, ..Algorithm::default() };
+            let settings = Settings { photons: Some(2 * n), replicates: Some(2), algorithm, seed: 1 };
+            Plan::new(&settings).unwrap()
+        };
+        let of = |n, replicate| stages(&plan(n, Sequence::SobolOwen), replicate);
+        assert_eq!(of(1 << 13, 0), [1 << 10, 1 << 11, 1 << 12, 1 << 13]);
+        assert_eq!(of(5000, 0), [1024, 2048, 4096, 5000]);
+        assert_eq!((of(1000, 0), of(1024, 0)), (vec![1000], vec![1024]));
+        assert_eq!(of(5000, 1), [5000]);
+        let numbered = Sequence::ALL.into_iter().find(|s| s.needs_number() && s.is_randomised());
+        if let Some(sequence) = numbered {
+            assert_eq!(stages(&plan(5000, sequence), 0), [5000]);
+        }
+    }
 }

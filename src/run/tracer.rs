@@ -18,8 +18,8 @@ use crate::transport::parallel::{How, Traced, trace_range};
 
 use super::algorithm::Algorithm;
 
-/// What is done with the points of a sequence: the one place where a sequence's name becomes a type, so that the walk is
-/// compiled for it.
+/// What is done with the points of a sequence: the one place where a sequence's name becomes a type, so that
+/// the walk is compiled for it.
 pub trait UsePoints {
     /// What comes of it.
     type Output;
@@ -85,7 +85,8 @@ impl<'s> Tracer<'s> {
     /// Traces up to photon number `until`.
     ///
     /// # Errors
-    /// A sequence that cannot have this many points; rejection by next point on a sequence that ends or with several emitters; a ledger that does not balance (a defect of the program).
+    /// A sequence that cannot have this many points; rejection by next point on a sequence that ends or with
+    /// several emitters; a ledger that does not balance (a defect of the program).
     pub fn trace(
         &mut self,
         until: u64,
@@ -93,18 +94,18 @@ impl<'s> Tracer<'s> {
         interrupt: &AtomicBool,
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Traced> {
-        let how = self.how(interrupt, progress)?;
-        let stage = Stage { tracer: self, how, until, sink: || receivers.sink() };
-        // A scene in colour is traced by one walk for all sequences, any other by a walk compiled for its own.
-        let (traced, attempts) = if self.scene.is_coloured() {
-            stage.carrying(&self.points.any()?, Rgb::WHITE)
-        } else {
-            self.points.provide(stage)?
-        };
+        let sink = || receivers.sink();
+        // A scene in colour is traced by one walk for all sequences, any other by a walk compiled for its
+        // own.
+        if self.scene.is_coloured() {
+            return self.trace_into(until, Rgb::WHITE, sink, interrupt, progress);
+        }
+        let stage = Stage { tracer: self, how: self.how(interrupt, progress)?, until, sink };
+        let (traced, attempts) = self.points.provide(stage)?;
         self.moved_on(until, attempts, traced)
     }
 
-    /// The same with arrivals in a sink of any kind, by one walk for all sequences.
+    /// Traces up to photon number `until` with arrivals in a sink of any kind, by one walk for all sequences.
     ///
     /// # Errors
     /// Those of [`Self::trace`].
@@ -173,7 +174,7 @@ impl<F> Stage<'_, '_, F> {
             s if s.skips_points() => advance(scene, points, &how, start, wanted),
             Sampling::Inverse(_) | Sampling::Rejection(_) => start + wanted,
         };
-        (trace_range(scene, points, start..end, carried, how, sink), end)
+        (trace_range(scene, &scene.emitters, points, start..end, carried, how, sink), end)
     }
 }
 

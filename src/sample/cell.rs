@@ -1,36 +1,15 @@
-//! One cell of a table on the sphere: its flux, and sampling by inverse functions (METHOD 3; paper eqs. 7 and 8).
+//! One cell of a table on the sphere: its flux, and sampling by inverse functions (METHOD 3; paper eqs. 7 and
+//! 8).
 //!
-//! A cell is [theta1, theta1 + dt] x [phi1, phi1 + dp] with values A1, A2 at theta1 (at phi1 and phi2) and B1, B2 at the
-//! far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. The marginal of theta is in
-//! [`super::marginal`]; the conditional of phi is a quadratic.
+//! A cell is [theta1, theta1 + dt] x [phi1, phi1 + dp] with values A1, A2 at theta1 (at phi1 and phi2) and
+//! B1, B2 at the far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. The marginal
+//! of theta is in [`super::marginal`]; the conditional of phi is a quadratic.
 
+use glam::DVec3;
+
+use super::angles::{Column, Row};
 use super::marginal::{Marginal, Polar, linear_quantile};
 use crate::math::solve::Solver;
-use crate::math::trig::sin_cos;
-
-/// A band of the table between two polar angles.
-#[derive(Debug, Clone, Copy)]
-pub struct Row {
-    /// Polar angle of the near edge, theta1.
-    pub theta: f64,
-    /// dt, positive.
-    pub width: f64,
-    pub(super) inverse_width: f64,
-    pub(super) sin: f64,
-    pub(super) cos: f64,
-    pub(super) sin_end: f64,
-}
-
-/// A lune of the table between two azimuths.
-#[derive(Debug, Clone, Copy)]
-pub struct Column {
-    /// Azimuth of the near edge, phi1.
-    pub phi: f64,
-    /// dp, positive.
-    pub width: f64,
-    sin: f64,
-    cos: f64,
-}
 
 /// The corner values of a cell and what is derived from them once.
 #[derive(Debug, Clone, Copy)]
@@ -38,71 +17,32 @@ pub struct Cell {
     /// A1, A2, B1, B2.
     pub corners: [f64; 4],
     inverse_mass: f64,
-    /// Index of the cell's row.
-    pub row: u32,
-    /// Index of the cell's column.
-    pub column: u32,
 }
 
-impl Row {
-    /// The row between two polar angles, 0 <= theta1 < theta2 <= pi.
-    pub fn new(theta1: f64, theta2: f64) -> Self {
-        let (sin, cos) = libm::sincos(theta1);
-        let width = theta2 - theta1;
-        Self {
-            theta: theta1,
-            width,
-            inverse_width: 1.0 / width,
-            sin,
-            cos,
-            sin_end: libm::sin(theta2).max(0.0),
-        }
-    }
-
-    /// F(dt) of the edge sums (1, 0) and (0, 1): that of any others is linear in them.
-    pub(super) fn masses(&self) -> [f64; 2] {
-        [(1.0, 0.0), (0.0, 1.0)].map(|edges| Marginal::new(self, edges, 1.0).mass_to(self.width).0)
-    }
-
-    /// sin theta1.
-    pub(super) fn sin(&self) -> f64 {
-        self.sin
-    }
-
-    /// cos theta1.
-    pub(super) fn cos(&self) -> f64 {
-        self.cos
-    }
-}
-
-impl Column {
-    /// The column between two azimuths, phi1 < phi2.
-    pub fn new(phi1: f64, phi2: f64) -> Self {
-        let (sin, cos) = libm::sincos(phi1);
-        Self { phi: phi1, width: phi2 - phi1, sin, cos }
-    }
-
-    /// (sin, cos) of the azimuth a fraction x into the column.
-    #[inline]
-    pub fn azimuth(&self, x: f64) -> (f64, f64) {
-        let (sin, cos) = sin_cos(x * self.width);
-        (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin)
-    }
+/// A direction drawn from a table.
+#[derive(Debug, Clone, Copy)]
+pub struct GridPoint {
+    /// Unit vector: polar axis z, azimuth from x towards y.
+    pub direction: DVec3,
+    /// Polar angle, radians.
+    pub theta: f64,
+    /// Azimuth, radians, within the table's range.
+    pub phi: f64,
 }
 
 impl Cell {
     /// A cell, or `None` where its flux is zero (or too small to be told from zero).
-    pub fn new(row: &Row, row_index: u32, column_index: u32, corners: [f64; 4]) -> Option<Self> {
+    pub fn new(row: &Row, corners: [f64; 4]) -> Option<Self> {
         let [a1, a2, b1, b2] = corners;
         let (mass, _) = Marginal::new(row, (a1 + a2, b1 + b2), 1.0).mass_to(row.width);
-        let cell = Self::of_mass(mass, row_index, column_index, corners);
+        let cell = Self::of_mass(mass, corners);
         (cell.inverse_mass > 0.0 && cell.inverse_mass.is_finite()).then_some(cell)
     }
 
     /// A cell whose F(dt) is known and positive.
     #[inline]
-    pub(super) fn of_mass(mass: f64, row_index: u32, column_index: u32, corners: [f64; 4]) -> Self {
-        Self { corners, inverse_mass: 1.0 / mass, row: row_index, column: column_index }
+    pub(super) fn of_mass(mass: f64, corners: [f64; 4]) -> Self {
+        Self { corners, inverse_mass: 1.0 / mass }
     }
 
     /// Integral of the bilinear value over the cell in solid angle: dp/2 F(dt).
@@ -110,21 +50,16 @@ impl Cell {
         0.5 * column.width / self.inverse_mass
     }
 
-    #[inline]
-    fn edge_sums(&self) -> (f64, f64) {
-        let [a1, a2, b1, b2] = self.corners;
-        (a1 + a2, b1 + b2)
-    }
-
-    /// The marginal distribution function of s: F(s) / F(dt).
-    pub fn theta_cdf(&self, row: &Row, s: f64) -> f64 {
-        (Marginal::new(row, self.edge_sums(), 1.0).mass_to(s).0 * self.inverse_mass).clamp(0.0, 1.0)
+    /// The largest corner.
+    pub(super) fn largest(&self) -> f64 {
+        self.corners.iter().copied().fold(0.0, f64::max)
     }
 
     /// The polar angle at which the marginal distribution function is u: the root of eq. (8).
     #[inline]
     pub fn sample_theta(&self, row: &Row, u: f64, solver: Solver) -> Polar {
-        Marginal::new(row, self.edge_sums(), self.inverse_mass).solve(u, solver)
+        let [a1, a2, b1, b2] = self.corners;
+        Marginal::new(row, (a1 + a2, b1 + b2), self.inverse_mass).solve(u, solver)
     }
 
     /// Values at phi1 and phi2 at the polar position s.
@@ -143,17 +78,32 @@ impl Cell {
         if near.is_finite() { linear_quantile(near, u) } else { u }
     }
 
-    /// The conditional distribution function of phi at s, for the fraction x of the column.
-    pub fn phi_cdf(&self, row: &Row, s: f64, x: f64) -> f64 {
-        let (l, r) = self.ends_at(row, s);
-        if l + r > 0.0 { (x * (l + 0.5 * (r - l) * x) / (0.5 * (l + r))).clamp(0.0, 1.0) } else { x }
-    }
-
     /// The bilinear value (7) at s and the fraction x of the column.
     #[inline]
-    pub fn value(&self, row: &Row, s: f64, x: f64) -> f64 {
+    pub(super) fn value(&self, row: &Row, s: f64, x: f64) -> f64 {
         let (l, r) = self.ends_at(row, s);
         l * (1.0 - x) + r * x
+    }
+
+    /// The point for the coordinates of theta and phi, by inverse functions: (point, theta - theta1, fraction
+    /// of the column).
+    #[inline]
+    pub(super) fn place(
+        &self,
+        row: &Row,
+        column: &Column,
+        [u_theta, u_phi]: [f64; 2],
+        solver: Solver,
+    ) -> (GridPoint, f64, f64) {
+        let Polar { s, sin, cos, .. } = self.sample_theta(row, u_theta, solver);
+        let x = self.sample_phi(row, s, u_phi);
+        let (sin_phi, cos_phi) = column.azimuth(x);
+        let point = GridPoint {
+            direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
+            theta: row.theta + s,
+            phi: column.phi + x * column.width,
+        };
+        (point, s, x)
     }
 }
 
@@ -165,8 +115,9 @@ mod tests {
     /// The part of pi that an f64 leaves out.
     const PI_LOW: f64 = 1.224_646_799_147_353_2e-16;
 
-    /// F(s) by Gauss-Legendre quadrature of the density itself: shares no formula with the solver. The sine near the
-    /// south pole is taken from pi - theta in two parts, so it is right to full relative precision there.
+    /// F(s) by Gauss-Legendre quadrature of the density itself: shares no formula with the solver. The sine
+    /// near the south pole is taken from pi - theta in two parts, so it is right to full relative precision
+    /// there.
     fn mass_by_quadrature(theta1: f64, dt: f64, a: f64, b: f64, s: f64) -> f64 {
         const X: [f64; 4] = [
             0.183_434_642_495_649_8,
@@ -247,7 +198,7 @@ mod tests {
         let mut most = 0;
         for (theta, width, corners) in families() {
             let row = Row::new(theta, theta + width);
-            let Some(cell) = Cell::new(&row, 0, 0, corners) else {
+            let Some(cell) = Cell::new(&row, corners) else {
                 panic!("no cell for {theta} {width} {corners:?}");
             };
             let (a, b) = (corners[0] + corners[1], corners[2] + corners[3]);
@@ -271,7 +222,7 @@ mod tests {
         for (theta, width, corners) in families() {
             let row = Row::new(theta, theta + width);
             let column = Column::new(0.3, 0.3 + 0.26);
-            let cell = Cell::new(&row, 0, 0, corners).unwrap();
+            let cell = Cell::new(&row, corners).unwrap();
             let (a, b) = (corners[0] + corners[1], corners[2] + corners[3]);
             let expected = 0.5 * column.width * mass_by_quadrature(row.theta, row.width, a, b, row.width);
             assert!((cell.flux(&column) / expected - 1.0).abs() < 1e-12, "{theta} {width} {corners:?}");
@@ -282,7 +233,7 @@ mod tests {
     fn a_full_sphere_cell_has_four_pi() {
         let row = Row::new(0.0, PI);
         let column = Column::new(0.0, 2.0 * PI);
-        let cell = Cell::new(&row, 0, 0, [1.0; 4]).unwrap();
+        let cell = Cell::new(&row, [1.0; 4]).unwrap();
         assert!((cell.flux(&column) - 4.0 * PI).abs() < 1e-14);
         // Uniform on the sphere: cos theta = 1 - 2 u.
         for u in uniforms() {
@@ -295,7 +246,7 @@ mod tests {
     #[test]
     fn zero_cells_do_not_exist() {
         let row = Row::new(0.2, 0.3);
-        assert!(Cell::new(&row, 0, 0, [0.0; 4]).is_none());
+        assert!(Cell::new(&row, [0.0; 4]).is_none());
     }
 
     #[test]
@@ -308,7 +259,7 @@ mod tests {
             [1e12, 1.0, 1.0, 1e-12],
             [1.0, 1.0 + 1e-15, 1.0, 1.0],
         ] {
-            let cell = Cell::new(&row, 0, 0, corners).unwrap();
+            let cell = Cell::new(&row, corners).unwrap();
             for t in [0.0, 0.3, 1.0] {
                 let s = t * row.width;
                 for u in uniforms() {

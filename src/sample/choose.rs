@@ -1,8 +1,8 @@
 //! Discrete events on one coordinate, and the renormalisation of what is left of it (METHOD 2, paper eq. 5).
 //!
-//! Everything works on 64-bit fractions: event k owns the integers [T_k, T_k + w_k), and u' = (u - T_k) / w_k is again
-//! a 64-bit fraction, below 1 by construction because u - T_k < w_k. An event of probability zero owns no integer and
-//! is never chosen.
+//! Everything works on 64-bit fractions: event k owns the integers [T_k, T_k + w_k), and u' = (u - T_k) / w_k
+//! is again a 64-bit fraction, below 1 by construction because u - T_k < w_k. An event of probability zero
+//! owns no integer and is never chosen.
 
 use crate::sequence::to_unit_f64;
 
@@ -27,15 +27,6 @@ impl Share {
     /// All fractions.
     pub const ALL: Self = Self { low: 0, width: 0 };
 
-    /// The fraction of the event that leaves this remainder, to the resolution of its width: the inverse of
-    /// [`Reusable::take`].
-    pub fn invert(self, remainder: u64) -> u64 {
-        match self.width {
-            0 => remainder,
-            width => self.low + ((u128::from(remainder) * u128::from(width)) >> 64) as u64,
-        }
-    }
-
     /// The part of all fractions that belongs to the event: its probability.
     #[inline]
     pub fn probability(self) -> f64 {
@@ -51,8 +42,8 @@ impl Share {
         }
     }
 
-    /// A part of this event, chosen by the fraction `v` of it that `find` turns into a part: (what was found, the part's
-    /// probability in this event, what is left of v for a last use).
+    /// A part of this event, chosen by the fraction `v` of it that `find` turns into a part: (what was found,
+    /// the part's probability in this event, what is left of v for a last use).
     #[inline]
     pub fn choose_part<R>(self, v: u64, find: impl FnOnce(u64) -> (R, Self)) -> (R, f64, f64) {
         if self.width == 0 {
@@ -66,15 +57,6 @@ impl Share {
         let (whole, width) = (self.width as f64, part.width as f64);
         let inside = (at - part.low) as f64 + product as u64 as f64 / TWO_TO_64;
         (found, width / whole, below_one(inside / width))
-    }
-
-    /// The fraction of this event at which `part` of it leaves `rest`: the inverse of [`Self::choose_part`], to 53 bits.
-    pub fn invert_part(self, part: Self, rest: f64) -> f64 {
-        if part.width == 0 {
-            return rest;
-        }
-        let whole = if self.width == 0 { TWO_TO_64 } else { self.width as f64 };
-        (((part.low - self.low) as f64 + rest * part.width as f64) / whole).min(ALMOST_ONE)
     }
 }
 
@@ -128,7 +110,8 @@ impl Reusable {
         self.span *= probability;
     }
 
-    /// Renormalises after the event that owns the fractions [low, low + width) was found, this one among them.
+    /// Renormalises after the event that owns the fractions [low, low + width) was found, this one among
+    /// them.
     #[inline]
     pub fn take(&mut self, Share { low, width }: Share) {
         if width != 0 {
@@ -163,9 +146,10 @@ fn divide(d: u64, width: u64) -> u64 {
 
 /// Widths of events on the 64-bit integers, in proportion to weights; they sum to 2^64 exactly.
 ///
-/// Each width is right to 53 bits of itself (not of the total), so rare events keep their ratio; the rounding error of
-/// the sum goes to the largest. Weights are any non-negative finite numbers; a weight of zero gives width 0. With one
-/// positive weight its width would be 2^64, which does not fit: `None`, as for no positive weight.
+/// Each width is right to 53 bits of itself (not of the total), so rare events keep their ratio; the rounding
+/// error of the sum goes to the largest. Weights are any non-negative finite numbers; a weight of zero gives
+/// width 0. With one positive weight its width would be 2^64, which does not fit: `None`, as for no positive
+/// weight.
 pub fn integer_widths(weights: &[f64]) -> Option<Vec<u64>> {
     let largest = weights.iter().copied().fold(0.0, f64::max);
     let valid = weights.iter().all(|w| *w >= 0.0 && w.is_finite());
@@ -173,7 +157,8 @@ pub fn integer_widths(weights: &[f64]) -> Option<Vec<u64>> {
         return None;
     }
     let total: f64 = weights.iter().map(|w| w / largest).sum();
-    // A width of 2^64 itself can come out when all other weights vanish beside one: held one below, then corrected.
+    // A width of 2^64 itself can come out when all other weights vanish beside one: held one below, then
+    // corrected.
     let mut widths: Vec<u64> = weights.iter().map(|w| (w / largest / total * TWO_TO_64) as u64).collect();
     let sum: u128 = widths.iter().map(|w| u128::from(*w)).sum();
     let at = weights.iter().position(|w| *w == largest)?;
@@ -237,8 +222,6 @@ mod tests {
                 let behind = (u128::from(v) * whole - (cuts[k] << 64)) / width;
                 let exact = (behind >> 4) as f64 / (1u64 << 60) as f64;
                 assert!((rest - exact).abs() < 1e-15 && rest < 1.0, "{v} in {k}: {rest} {exact}");
-                let back = event.invert_part(part, rest);
-                assert!((back - to_unit_f64(v)).abs() < 1e-15, "{v} in {k}");
             }
         }
         assert!(Share { low: 0, width: u64::MAX }.rest(u64::MAX - 1) < 1.0);
@@ -292,8 +275,8 @@ mod tests {
 
     #[test]
     fn renormalised_net_keeps_its_strata_inside_the_event() {
-        // 2^14 points, an event of probability 1/4: the 2^12 points inside are again a net in (u', v): every box of
-        // 2^-6 x 2^-6 holds exactly one.
+        // 2^14 points, an event of probability 1/4: the 2^12 points inside are again a net in (u', v): every
+        // box of 2^-6 x 2^-6 holds exactly one.
         let points = OwenPoints::new(3, 0);
         let mut count = vec![0; 1 << 12];
         for i in 0..1 << 14 {

@@ -1,118 +1,15 @@
 //! A photon's coordinates: handed out in order of use, labelled, counted.
 //!
-//! The number of coordinates a photon consumes is its constructive dimension (METHOD 1). A coordinate is counted when it
-//! is drawn; an event with one possible outcome draws none. With renormalisation all discrete events of a photon
-//! share one coordinate until fewer than 24 of its 64 bits are left; without, each draws its own.
+//! The number of coordinates a photon consumes is its constructive dimension (METHOD 1). A coordinate is
+//! counted when it is drawn; an event with one possible outcome draws none. With renormalisation all discrete
+//! events of a photon share one coordinate until fewer than 24 of its 64 bits are left; without, each draws
+//! its own.
 
-use super::choose::{Reusable, SMALLEST_SPAN, TWO_TO_64};
-use super::discrete::Discrete;
+use super::choose::Reusable;
 use super::method::Sampling;
 use crate::sequence::{Points, to_unit_f64};
 
-/// What a coordinate was drawn for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    /// Which emitter and which table cell; what is left places the photon inside the cell along theta.
-    Emission,
-    /// The first continuous coordinate of an emission, where the one above could not serve.
-    EmissionTheta,
-    /// The second continuous coordinate of an emission.
-    EmissionPhi,
-    /// The place within a beam's cross-section or on a panel.
-    BeamPosition,
-    /// A discrete event at a surface.
-    Event,
-    /// A scattered direction.
-    Scatter,
-    /// Whether a proposed direction is accepted: rejection only.
-    Acceptance,
-}
-
-impl Purpose {
-    /// Every purpose, in the order of the counters.
-    pub const ALL: [Self; 7] = [
-        Self::Emission,
-        Self::EmissionTheta,
-        Self::EmissionPhi,
-        Self::BeamPosition,
-        Self::Event,
-        Self::Scatter,
-        Self::Acceptance,
-    ];
-
-    /// The label in reports.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Emission => "emission",
-            Self::EmissionTheta => "emission theta",
-            Self::EmissionPhi => "emission phi",
-            Self::BeamPosition => "beam position",
-            Self::Event => "event",
-            Self::Scatter => "scatter",
-            Self::Acceptance => "acceptance",
-        }
-    }
-}
-
-/// What makes the decisions of a walk: a photon's coordinates, or a script.
-pub trait Chooser {
-    /// Whether an event of this probability happens. Probabilities at or beyond 0 and 1 decide themselves and cost
-    /// nothing.
-    fn happens(&mut self, probability: f64) -> bool;
-    /// A continuous coordinate in [0, 1).
-    fn uniform(&mut self, purpose: Purpose) -> f64;
-
-    /// A coordinate that serves discrete choices first ([`Self::choose_by`]) and as a continuous one last ([`Self::rest`]).
-    #[inline]
-    fn reusable(&mut self, purpose: Purpose) -> Reusable {
-        Reusable::fresh((self.uniform(purpose) * TWO_TO_64) as u64)
-    }
-
-    /// A choice among more than one outcome on `u`; a spent coordinate is replaced first.
-    #[inline]
-    fn choose_by<R>(
-        &mut self,
-        u: &mut Reusable,
-        purpose: Purpose,
-        choice: impl FnOnce(&mut Reusable) -> R,
-    ) -> R {
-        if u.is_spent() {
-            *u = self.reusable(purpose);
-        }
-        choice(u)
-    }
-
-    /// What is left of `u` as a continuous coordinate; a fresh one where too little is.
-    #[inline]
-    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
-        if u.is_spent() { self.uniform(purpose) } else { to_unit_f64(u.bits()) }
-    }
-
-    /// Whether a coordinate goes on after a choice.
-    #[inline]
-    fn reuses(&self) -> bool {
-        true
-    }
-
-    /// A choice among more than one outcome: one more of the photon's events, where these share a coordinate; else on a
-    /// coordinate of this purpose.
-    #[inline]
-    fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
-        choice(&mut self.reusable(purpose))
-    }
-
-    /// What is left of a coordinate after a choice of this probability, for a last use; a fresh one where too little is.
-    #[inline]
-    fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
-        if probability < SMALLEST_SPAN { self.uniform(purpose) } else { left }
-    }
-
-    /// How tables of scattering are sampled.
-    #[inline]
-    fn sampling(&self) -> Sampling {
-        Sampling::default()
-    }
-}
+pub use super::chooser::{Chooser, Purpose};
 
 /// The coordinates of one photon.
 #[derive(Debug)]
@@ -175,28 +72,6 @@ impl<'p, P: Points> Coordinates<'p, P> {
             _ => self.draw_reusable(Purpose::Event),
         }
     }
-
-    /// An event of `table` on `u`; a spent coordinate is replaced first.
-    #[inline]
-    pub fn choose(&mut self, table: &Discrete, u: &mut Reusable, purpose: Purpose) -> usize {
-        if table.is_single() {
-            return table.choose(u).0;
-        }
-        if u.is_spent() {
-            *u = self.draw_reusable(purpose);
-        }
-        let (event, _) = table.choose(u);
-        if !self.reuse {
-            u.spend();
-        }
-        event
-    }
-
-    /// What is left of `u` as a continuous coordinate; a fresh one where fewer than 24 bits are.
-    #[inline]
-    pub fn remainder(&mut self, u: Reusable, purpose: Purpose) -> f64 {
-        to_unit_f64(if u.is_spent() { self.draw(purpose) } else { u.bits() })
-    }
 }
 
 impl<P: Points> Chooser for Coordinates<'_, P> {
@@ -222,28 +97,6 @@ impl<P: Points> Chooser for Coordinates<'_, P> {
     #[inline]
     fn reusable(&mut self, purpose: Purpose) -> Reusable {
         self.draw_reusable(purpose)
-    }
-
-    #[inline]
-    fn choose_by<R>(
-        &mut self,
-        u: &mut Reusable,
-        purpose: Purpose,
-        choice: impl FnOnce(&mut Reusable) -> R,
-    ) -> R {
-        if u.is_spent() {
-            *u = self.draw_reusable(purpose);
-        }
-        let chosen = choice(u);
-        if !self.reuse {
-            u.spend();
-        }
-        chosen
-    }
-
-    #[inline]
-    fn rest(&mut self, u: Reusable, purpose: Purpose) -> f64 {
-        self.remainder(u, purpose)
     }
 
     #[inline]
@@ -323,8 +176,8 @@ mod tests {
     fn a_spent_coordinate_is_replaced_before_fewer_than_24_bits_are_used() {
         let points = IndependentPoints::new(2, 0);
         let mut c = Coordinates::new(&points, 9, true);
-        // Each fair event costs one bit: events 1 to 41 run on the first coordinate (after 40 just 24 bits remain,
-        // which is still allowed), the 42nd draws the second.
+        // Each fair event costs one bit: events 1 to 41 run on the first coordinate (after 40 just 24 bits
+        // remain, which is still allowed), the 42nd draws the second.
         for event in 1..=41 {
             c.happens(0.5);
             assert_eq!(c.drawn(), 1, "event {event}");
@@ -353,8 +206,8 @@ mod tests {
 
     #[test]
     fn sixty_reuses_in_a_row_keep_their_frequencies() {
-        // Events of probability 0.9 spend 0.15 or 3.3 bits each: 60 of them share one or two coordinates. The last and
-        // the one before it are as likely as the first, and independent of each other.
+        // Events of probability 0.9 spend 0.15 or 3.3 bits each: 60 of them share one or two coordinates. The
+        // last and the one before it are as likely as the first, and independent of each other.
         let points = IndependentPoints::new(5, 0);
         let n = 100_000;
         let (mut first, mut last, mut both, mut most) = (0.0, 0.0, 0.0, 0);

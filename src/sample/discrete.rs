@@ -1,7 +1,7 @@
 //! A table of discrete events with a guide: choice by one look-up and a short walk, monotone in u.
 //!
-//! Guide tables (Chen and Asau 1974) keep u monotone, so a net stays a net in the chosen event; an alias table would
-//! not. Division by an event's width is a multiplication by its stored reciprocal.
+//! Guide tables (Chen and Asau 1974) keep u monotone, so a net stays a net in the chosen event; an alias
+//! table would not. Division by an event's width is a multiplication by its stored reciprocal.
 
 use super::choose::{Reusable, TWO_TO_64, integer_widths};
 
@@ -28,7 +28,8 @@ pub struct Discrete {
 }
 
 impl Discrete {
-    /// Events in proportion to these weights (non-negative, finite, fewer than 2^32); `None` where none is positive.
+    /// Events in proportion to these weights (non-negative, finite, fewer than 2^32); `None` where none is
+    /// positive.
     pub fn new(weights: &[f64]) -> Option<Self> {
         let positive = |k: &usize| weights[*k] > 0.0;
         let mut entries = Vec::with_capacity(weights.len());
@@ -59,8 +60,8 @@ impl Discrete {
         Some(Self { entries, guide, shift })
     }
 
-    /// Chooses an event with what is left of `u`, and renormalises it: (index of the event, its probability). A table
-    /// of one event leaves u as it is.
+    /// Chooses an event with what is left of `u`, and renormalises it: (index of the event, its probability).
+    /// A table of one event leaves u as it is.
     #[inline]
     pub fn choose(&self, u: &mut Reusable) -> (usize, f64) {
         let bits = u.bits();
@@ -75,25 +76,6 @@ impl Discrete {
         let probability = entry.width as f64 / TWO_TO_64;
         u.renormalised(quotient(bits - entry.low, entry), probability);
         (entry.event as usize, probability)
-    }
-
-    /// The inverse of [`Self::choose`]: the fraction whose choice is this event with this remainder (to the
-    /// resolution of the event's width), or `None` for an event of probability zero.
-    pub fn invert(&self, event: usize, remainder: u64) -> Option<u64> {
-        let entry = self.entries[self.entries.binary_search_by_key(&event, |e| e.event as usize).ok()?];
-        if entry.width == 0 {
-            return Some(remainder);
-        }
-        Some(entry.low + ((u128::from(remainder) * u128::from(entry.width)) >> 64) as u64)
-    }
-
-    /// Probability of an event, 0 where it is never chosen.
-    pub fn probability(&self, event: usize) -> f64 {
-        match self.entries.binary_search_by_key(&event, |e| e.event as usize) {
-            Ok(at) if self.entries[at].width == 0 => 1.0,
-            Ok(at) => self.entries[at].width as f64 / TWO_TO_64,
-            Err(_) => 0.0,
-        }
     }
 
     /// Whether there is anything to choose.
@@ -145,9 +127,6 @@ mod tests {
             let exact = ((u128::from(bits) - lows[k]) << 64) / u128::from(widths[k]);
             assert!(exact - u128::from(u.bits()) <= 2, "{bits}");
             assert!((p - weights[k] / weights.iter().sum::<f64>()).abs() <= 1e-15);
-            // The inverse, to the resolution of the event.
-            let back = table.invert(k, u.bits()).unwrap();
-            assert!(back.abs_diff(bits) <= 2);
         }
     }
 
@@ -161,9 +140,8 @@ mod tests {
             let mut u = Reusable::fresh(bits);
             assert_eq!(one.choose(&mut u), (1, 1.0));
             assert_eq!(u.bits(), bits);
-            assert_eq!(one.invert(1, bits), Some(bits));
         }
-        assert!(one.is_single() && one.probability(1) == 1.0 && one.probability(0) == 0.0);
+        assert!(one.is_single());
     }
 
     #[test]

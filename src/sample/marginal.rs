@@ -1,15 +1,17 @@
-//! The polar angle within a cell: eq. (8) of the paper about the cell's own edge, and its root by each solver.
+//! The polar angle within a cell: eq. (8) of the paper about the cell's own edge, and its root by each
+//! solver.
 //!
-//! With a = A1 + A2, b = B1 + B2 and the in-cell variable s = theta - theta1 the integral of the theta marginal is
+//! With a = A1 + A2, b = B1 + B2 and the in-cell variable s = theta - theta1 the integral of the theta
+//! marginal is
 //!
 //! ```text
 //! F(s) = a (S sin s + C (1 - cos s)) + (b - a)/dt (S (s sin s - (1 - cos s)) + C (sin s - s cos s)),
 //! ```
 //!
-//! S = sin theta1, C = cos theta1. Every term is of the order of the result, so nothing cancels in narrow cells or at a
-//! pole, where eq. (8) in absolute angles loses all digits.
+//! S = sin theta1, C = cos theta1. Every term is of the order of the result, so nothing cancels in narrow
+//! cells or at a pole, where eq. (8) in absolute angles loses all digits.
 
-use super::cell::Row;
+use super::angles::Row;
 use crate::math::solve::{
     Expansion, Root, Solver, bisection, bracketed_newton, bracketed_secant, bracketed_series, ridder,
 };
@@ -27,7 +29,8 @@ pub struct Polar {
     pub sin: f64,
     /// cos theta.
     pub cos: f64,
-    /// Evaluations of F that the solver used.
+    /// Evaluations of F that the solver used: what tests and benches compare solvers by.
+    #[cfg_attr(not(feature = "internals"), expect(dead_code))]
     pub evaluations: u32,
 }
 
@@ -109,9 +112,9 @@ impl<'r> Marginal<'r> {
         })
     }
 
-    /// From the quantile of a linear density by the Taylor series of F, whose every coefficient is at hand once F is:
-    /// derivative k of the density g(s) sin(theta), g = level + rise s, is g times a sine or cosine and k rise times
-    /// another, and so at most max g + k |rise|.
+    /// From the quantile of a linear density by the Taylor series of F, whose every coefficient is at hand
+    /// once F is: derivative k of the density g(s) sin(theta), g = level + rise s, is g times a sine or
+    /// cosine and k rise times another, and so at most max g + k |rise|.
     #[inline]
     fn quadratic_newton(&self, u: f64) -> Polar {
         let w = self.row.width;
@@ -149,9 +152,9 @@ impl<'r> Marginal<'r> {
         }
     }
 
-    /// The root and the inverse slope there of the distribution function whose density is linear between the end
-    /// values a sin theta1 and b sin theta2. Where both vanish (a cell from pole to pole, a pole with a zero edge) it
-    /// has none, and u itself serves.
+    /// The root and the inverse slope there of the distribution function whose density is linear between the
+    /// end values a sin theta1 and b sin theta2. Where both vanish (a cell from pole to pole, a pole with a
+    /// zero edge) it has none, and u itself serves.
     #[inline]
     fn linear_start(&self, u: f64) -> (f64, f64) {
         let w = self.row.width;
@@ -166,16 +169,21 @@ impl<'r> Marginal<'r> {
     }
 }
 
-/// sin t and 1 - cos t of a step beyond the last evaluation: max g is at least 1/2 where F(dt) = 1, so the tolerance
-/// allows |t|^5 / 240 <= 2^-46 at most, |t| <= 5.1e-3, and the terms left out are below 2^-55.
+/// F(dt) of the edge sums (1, 0) and (0, 1): that of any others is linear in them.
+pub(super) fn unit_masses(row: &Row) -> [f64; 2] {
+    [(1.0, 0.0), (0.0, 1.0)].map(|edges| Marginal::new(row, edges, 1.0).mass_to(row.width).0)
+}
+
+/// sin t and 1 - cos t of a step beyond the last evaluation: max g is at least 1/2 where F(dt) = 1, so the
+/// tolerance allows |t|^5 / 240 <= 2^-46 at most, |t| <= 5.1e-3, and the terms left out are below 2^-55.
 #[inline]
 fn short_turn(t: f64) -> (f64, f64) {
     let square = t * t;
     (t * (1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0))), square * (0.5 - square * (1.0 / 24.0)))
 }
 
-/// Quantile u of the density 6 x (1 - x) on [0, 1], to 2 %: the root of x^2 (3 - 2 x) = u by two rounds of iteration
-/// from either end.
+/// Quantile u of the density 6 x (1 - x) on [0, 1], to 2 %: the root of x^2 (3 - 2 x) = u by two rounds of
+/// iteration from either end.
 #[inline(never)]
 fn parabola_quantile(u: f64) -> f64 {
     let near = u.min(1.0 - u);
@@ -184,8 +192,8 @@ fn parabola_quantile(u: f64) -> f64 {
     if u < 0.5 { x } else { 1.0 - x }
 }
 
-/// Quantile u of a density on [0, 1] that is linear from `near` to 1 - `near` (in units of their sum): the root of
-/// (1 - 2 near) x^2 + 2 near x = u in the form that does not cancel.
+/// Quantile u of a density on [0, 1] that is linear from `near` to 1 - `near` (in units of their sum): the
+/// root of (1 - 2 near) x^2 + 2 near x = u in the form that does not cancel.
 #[inline]
 pub(super) fn linear_quantile(near: f64, u: f64) -> f64 {
     let far = 1.0 - near;

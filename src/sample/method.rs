@@ -5,8 +5,8 @@ use crate::math::solve::Solver;
 /// The way from coordinates to a direction of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
-    /// Inverse functions (METHOD 3), with this solver of the cell equation: two coordinates, the first of which also
-    /// chooses the cell.
+    /// Inverse functions (METHOD 3), with this solver of the cell equation: two coordinates, the first of
+    /// which also chooses the cell.
     Inverse(Solver),
     /// Rejection: proposals uniform in solid angle, accepted with value / largest value. The same density.
     Rejection(Rejection),
@@ -14,17 +14,19 @@ pub enum Sampling {
 
 /// Where the proposals of a rejection come from, and what a rejected one is followed by.
 ///
-/// Proposals inside a cell cannot be followed by the next point: that would choose another cell, and cells would come out
-/// by flux times chance of acceptance. For the same reason the next point needs a scene with one emitter.
+/// Proposals inside a cell cannot be followed by the next point: that would choose another cell, and cells
+/// would come out by flux times chance of acceptance. For the same reason the next point needs a scene with
+/// one emitter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rejection {
-    /// A cell chosen by its flux; proposals inside it against the largest of its corners, from the photon's next
-    /// coordinates.
+    /// A cell chosen by its flux; proposals inside it against the largest of its corners, from the photon's
+    /// next coordinates.
     #[default]
     Cell,
     /// Proposals from the whole table against its largest value, from the photon's next coordinates.
     Table,
-    /// The same, each from the next point of the sequence: photon k is the k-th point whose proposal is accepted.
+    /// The same, each from the next point of the sequence: photon k is the k-th point whose proposal is
+    /// accepted.
     NextPoint,
 }
 

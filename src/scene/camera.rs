@@ -37,8 +37,8 @@ pub enum Method {
     /// Eye paths to a scattering surface, density estimation there.
     #[default]
     Map,
-    /// Every photon is joined to the pinhole: no density bias, but what is scattered last is not seen by mirror or through
-    /// glass.
+    /// Every photon is joined to the pinhole: no density bias, but what is scattered last is not seen by
+    /// mirror or through glass.
     Splat,
 }
 
@@ -78,7 +78,8 @@ pub const FEWEST_NEIGHBOURS: u32 = 64;
 /// Which photons a density is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Bandwidth {
-    /// All within a radius that is chosen once from the photons, but [`FEWEST_NEIGHBOURS`] at least (docs/PICTURE.md).
+    /// All within a radius that is chosen once from the photons, but [`FEWEST_NEIGHBOURS`] at least
+    /// (docs/PICTURE.md).
     #[default]
     Automatic,
     /// All within a radius, and where these are fewer than so many, that many nearest.
@@ -166,8 +167,8 @@ pub struct CameraSpec {
 }
 
 impl CameraSpec {
-    /// A pinhole camera with the defaults of docs/SCENE.md. Directions of a point looked at that is `position`, or of an `up` along
-    /// the view, are no numbers; [`Camera::new`] refuses them.
+    /// A pinhole camera with the defaults of docs/SCENE.md. Directions of a point looked at that is
+    /// `position`, or of an `up` along the view, are no numbers; [`Camera::new`] refuses them.
     pub fn pinhole(position: DVec3, look_at: DVec3, up: DVec3, fov_deg: f64, pixels: [u32; 2]) -> Self {
         let forward = (look_at - position).normalize();
         Self {
@@ -200,8 +201,9 @@ impl Camera {
     /// A camera of these numbers.
     ///
     /// # Errors
-    /// [`Invalid`], with the key of `[camera]` in a scene file, for what is no number or out of the ranges of docs/SCENE.md; a point
-    /// looked at that is the position; an `up` along the view; splatting through a lens.
+    /// [`Invalid`], with the key of `[camera]` in a scene file, for what is no number or out of the ranges of
+    /// docs/SCENE.md; a point looked at that is the position; an `up` along the view; splatting through a
+    /// lens.
     pub fn new(spec: CameraSpec) -> Result<Self, Invalid> {
         let content = |what, found: String, required: &str| {
             Err(Invalid::Content { what, found, required: required.to_string() })

@@ -24,7 +24,7 @@ pub fn start(
     let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
     let figure = Figure::new(emitter);
     let on = || geometry.surface_at(centre).or_else(|| figure.as_ref()?.met(geometry, Contact::Flush));
-    if let Some(surface) = (!emitter.may_touch()).then(on).flatten() {
+    if let Some(surface) = (!emitter.kind().may_touch).then(on).flatten() {
         return fail(
             format!("emitter \"{name}\" on surface \"{}\"", label(surface)),
             "an emitter off every surface: on one, it is on neither side",
@@ -47,7 +47,7 @@ pub fn start(
         );
     }
     if let Some(surface) = figure.met(geometry, Contact::Cut) {
-        let noun = emitter.noun();
+        let noun = emitter.kind().noun;
         return fail(
             format!("the {noun} \"{name}\" cut by the closed surface \"{}\"", label(surface)),
             &format!("a {noun} wholly on one side of every closed surface"),

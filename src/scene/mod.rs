@@ -28,7 +28,7 @@ pub struct Identity {
     pub text: String,
     /// SHA-256 of the text, hexadecimal.
     pub sha256: String,
-    /// (path as written in the scene, SHA-256 of the content), in the order of their first use.
+    /// (path as written in the scene, SHA-256 of the content), once for each part that names it, in their order.
     pub files: Vec<(String, String)>,
     /// SHA-256 of all that light depends on: everything but the camera, in a form that comments, layout and ways of writing
     /// a number do not change.

@@ -1,8 +1,8 @@
 //! What a scene requires: only that machinery runs (ARCHITECTURE, Numbers: "only what a scene requires").
 //!
-//! What is not in the list costs nothing: no storage and no branch in the inner loop. Only a scene of materials in colour
-//! has photons with weights; only one with a camera keeps photons, and only where the camera makes a map of them. Nothing that a
-//! scene can name needs wavelengths, so there are none.
+//! What is not in the list costs nothing: no storage and no branch in the inner loop. Only a scene of
+//! materials in colour has photons with weights; only one with a camera keeps photons, and only where the
+//! camera makes a map of them. Nothing that a scene can name needs wavelengths, so there are none.
 
 use crate::emitter::Emits;
 use crate::geometry::Shape;
@@ -21,7 +21,7 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let materials = scene.materials();
     let specular = materials.iter().any(|m| m.kind() == Kind::Specular);
     let words: Vec<&str> = materials.iter().flat_map(Material::requires).copied().collect();
-    let mut emission: Vec<(u8, &str)> = emitters.iter().map(Emits::requires).collect();
+    let mut emission: Vec<(u8, &str)> = emitters.iter().map(|e| e.kind().requires).collect();
     emission.sort_unstable();
     emission.dedup();
     let of_emitters_and_shapes = [

@@ -40,11 +40,6 @@ impl JitteredPoints {
             uniform: IndependentPoints::new(seed, replicate),
         }
     }
-
-    /// Columns and rows of the grid that each pair of coordinates has.
-    pub fn grid(&self) -> (u64, u64) {
-        (self.columns.number(), self.rows.number())
-    }
 }
 
 impl Points for JitteredPoints {
@@ -74,11 +69,16 @@ fn largest_divisor_up_to_root(number: NonZeroU64) -> NonZeroU64 {
 mod tests {
     use super::*;
 
+    /// Columns and rows of the grid that each pair of coordinates has.
+    fn grid(points: &JitteredPoints) -> (u64, u64) {
+        (points.columns.number(), points.rows.number())
+    }
+
     #[test]
     fn one_point_a_rectangle_in_every_pair() {
         for number in [1u64, 2, 7, 12, 36, 100, 210, 1024, 1000] {
             let points = JitteredPoints::new(5, 2, NonZeroU64::new(number).unwrap());
-            let (columns, rows) = points.grid();
+            let (columns, rows) = grid(&points);
             assert!(columns * rows == number && columns <= rows);
             for pair in [0, 1, 15, 31] {
                 for start in [0, number, (1 << 50) / number * number] {
@@ -99,7 +99,7 @@ mod tests {
         for (number, grid) in
             [(36, (6, 6)), (4_456_448, (2048, 2176)), (13, (1, 13)), (1 << 48, (1 << 24, 1 << 24))]
         {
-            assert_eq!(JitteredPoints::new(1, 0, NonZeroU64::new(number).unwrap()).grid(), grid);
+            assert_eq!(self::grid(&JitteredPoints::new(1, 0, NonZeroU64::new(number).unwrap())), grid);
         }
     }
 }

@@ -33,11 +33,6 @@ impl KroneckerPoints {
     pub fn roberts() -> Self {
         Self::with(&ROBERTS)
     }
-
-    /// Coordinates that are its own, not the hash's.
-    pub fn coordinates(&self) -> u32 {
-        self.alphas.len() as u32
-    }
 }
 
 impl Points for KroneckerPoints {

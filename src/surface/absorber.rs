@@ -9,12 +9,10 @@ use crate::surface::{Event, Incidence, Kind, Model, Throughput};
 pub struct Absorber;
 
 impl Model for Absorber {
+    const REQUIRES: &[&str] = &[];
+
     fn kind(&self) -> Kind {
         Kind::Absorbing
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &[]
     }
 
     fn is_coloured(&self) -> bool {

@@ -1,12 +1,12 @@
 //! A smooth interface between two transparent media: exact Fresnel reflection, refraction, total reflection.
 //!
-//! Scene text: `type = "dielectric"`, `ior` behind the outward normal, `ior_outside` (default 1) before it. Unpolarised at
-//! every face: a slab then passes T = (1 - R)/(1 + R) with R the mean of s and p (METHOD 1).
+//! Scene text: `type = "dielectric"`, `ior` behind the outward normal, `ior_outside` (default 1) before it.
+//! Unpolarised at every face: a slab then passes T = (1 - R)/(1 + R) with R the mean of s and p (METHOD 1).
 
 use glam::DVec3;
 
 use crate::error::Invalid;
-use crate::error::invalid::number;
+use crate::error::invalid::Interval;
 use crate::sample::coordinates::Chooser;
 use crate::surface::incidence::keep_side;
 use crate::surface::{Event, Incidence, Kind, Model, Throughput, Way, Ways};
@@ -18,22 +18,16 @@ pub struct Dielectric {
     ior_outside: f64,
 }
 
-/// Least and greatest refractive index.
-pub const RANGE: [f64; 2] = [1e-3, 1e3];
-
-/// [`RANGE`] in words.
-pub const REQUIRED: &str = "a refractive index from 0.001 to 1000";
+/// Refractive indices.
+pub const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
 
 impl Dielectric {
     /// An interface: `ior` behind the outward normal, `ior_outside` before it.
     ///
     /// # Errors
-    /// Indices out of [`RANGE`].
+    /// Indices outside [`IOR`].
     pub fn new(ior: f64, ior_outside: f64) -> Result<Self, Invalid> {
-        Ok(Self {
-            ior: number("ior", ior, RANGE, REQUIRED)?,
-            ior_outside: number("ior_outside", ior_outside, RANGE, REQUIRED)?,
-        })
+        Ok(Self { ior: IOR.check("ior", ior)?, ior_outside: IOR.check("ior_outside", ior_outside)? })
     }
 
     /// Refractive index behind the outward normal.
@@ -47,8 +41,8 @@ impl Dielectric {
     }
 }
 
-/// Unpolarised Fresnel reflectance and the cosine of the refracted ray, for relative index `eta` = transmitted over
-/// incident and the cosine of incidence; total reflection is (1, 0).
+/// Unpolarised Fresnel reflectance and the cosine of the refracted ray, for relative index `eta` =
+/// transmitted over incident and the cosine of incidence; total reflection is (1, 0).
 #[inline]
 pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
     if eta == 1.0 {
@@ -64,54 +58,34 @@ pub fn fresnel(eta: f64, cos_i: f64) -> (f64, f64) {
     (0.5 * (s * s + p * p), cos_t)
 }
 
-/// What happens to light at an interface.
-#[derive(Debug, Clone, Copy)]
-struct Split {
-    /// Part of the flux that is mirrored; the rest is refracted. 1 in total reflection, where there is no refracted way.
-    reflectance: f64,
-    direction: DVec3,
-    facet: DVec3,
-    normal: DVec3,
-    eta: f64,
-    cos_i: f64,
-    cos_t: f64,
-    behind: bool,
-}
-
-impl Split {
-    /// The mirrored direction, unit, and whether a smooth normal made an exception necessary ([`Event::Leaves`]).
-    #[inline]
-    fn mirrored(&self) -> (DVec3, bool) {
-        self.kept(self.direction + 2.0 * self.cos_i * self.normal, self.facet)
-    }
-
-    /// Likewise the refracted direction; without meaning in total reflection.
-    #[inline]
-    fn refracted(&self) -> (DVec3, bool) {
-        self.kept(refract(self.direction, self.normal, self.eta, self.cos_i, self.cos_t), -self.facet)
-    }
-
-    #[inline]
-    fn kept(&self, direction: DVec3, towards: DVec3) -> (DVec3, bool) {
-        let (direction, turned) = keep_side(direction, towards);
-        (direction.normalize(), self.behind || turned)
-    }
-}
-
 impl Dielectric {
+    /// The part of the flux that is mirrored (1 in total reflection), and both ways on by whether they go
+    /// through: the direction, unit, and whether a smooth normal made an exception necessary
+    /// ([`Event::Leaves`]).
     #[inline]
-    fn split(&self, at: &Incidence) -> Split {
+    fn split(&self, at: &Incidence) -> (f64, impl Fn(bool) -> (DVec3, bool)) {
+        let Incidence { direction, facet, .. } = *at;
         let eta = if at.front { self.ior / self.ior_outside } else { self.ior_outside / self.ior };
         let (normal, behind) = at.working_normal();
         // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
-        let cos_i = (-at.direction.dot(normal)).clamp(0.0, 1.0);
+        let cos_i = (-direction.dot(normal)).clamp(0.0, 1.0);
         let (reflectance, cos_t) = fresnel(eta, cos_i);
-        Split { reflectance, direction: at.direction, facet: at.facet, normal, eta, cos_i, cos_t, behind }
+        let way = move |through| {
+            let (onward, towards) = if through {
+                (direction / eta + (cos_i / eta - cos_t) * normal, -facet)
+            } else {
+                (direction + 2.0 * cos_i * normal, facet)
+            };
+            let (onward, turned) = keep_side(onward, towards);
+            (onward.normalize(), behind || turned)
+        };
+        (reflectance, way)
     }
 
-    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye path that goes
-    /// on through the interface from the medium of index n_i, on the side `front`, sees that part of the luminance in n_t.
-    /// (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, section 5.2.)
+    /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye
+    /// path that goes on through the interface from the medium of index n_i, on the side `front`, sees that
+    /// part of the luminance in n_t. (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
+    /// 1997, section 5.2.)
     #[inline]
     fn luminance_factor(&self, front: bool) -> f64 {
         let ratio = self.ior_outside / self.ior;
@@ -120,13 +94,11 @@ impl Dielectric {
 }
 
 impl Model for Dielectric {
+    const REQUIRES: &[&str] = &["refraction"];
+
     #[inline]
     fn kind(&self) -> Kind {
         Kind::Specular
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &["refraction"]
     }
 
     fn is_coloured(&self) -> bool {
@@ -140,29 +112,25 @@ impl Model for Dielectric {
     /// Reflects with the Fresnel reflectance, else refracts.
     #[inline]
     fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, _: &mut T) -> Event {
-        let split = self.split(at);
-        let through = !chooser.happens(split.reflectance);
-        let (direction, corrected) = if through { split.refracted() } else { split.mirrored() };
+        let (reflectance, way) = self.split(at);
+        let through = !chooser.happens(reflectance);
+        let (direction, corrected) = way(through);
         Event::Leaves { direction, through, corrected }
     }
 
     #[inline]
     fn specular(&self, at: &Incidence) -> Ways {
-        let split = self.split(at);
-        let r = split.reflectance;
-        let way =
-            |(direction, _), part, luminance_factor| Way { direction, part: [part; 3], luminance_factor };
+        let (r, way) = self.split(at);
+        let way = |through, part, luminance_factor| {
+            let direction = way(through).0;
+            Way { direction, part: [part; 3], luminance_factor }
+        };
         Ways {
-            mirrored: (r > 0.0).then(|| way(split.mirrored(), r, 1.0)),
-            through: (r < 1.0).then(|| way(split.refracted(), 1.0 - r, self.luminance_factor(at.front))),
+            mirrored: (r > 0.0).then(|| way(false, r, 1.0)),
+            through: (r < 1.0).then(|| way(true, 1.0 - r, self.luminance_factor(at.front))),
             lossless: true,
         }
     }
-}
-
-#[inline]
-fn refract(direction: DVec3, normal: DVec3, eta: f64, cos_i: f64, cos_t: f64) -> DVec3 {
-    direction / eta + (cos_i / eta - cos_t) * normal
 }
 
 #[cfg(test)]

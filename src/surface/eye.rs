@@ -1,7 +1,7 @@
 //! What an eye path carries: the part of the luminance ahead of it that reaches the eye.
 //!
-//! A way multiplies it by its part of the flux and by its [`crate::surface::Way::luminance_factor`]. Roulette ends paths that have
-//! become faint or long.
+//! A way multiplies it by its part of the flux and by its [`crate::surface::Way::luminance_factor`]. Roulette
+//! ends paths that have become faint or long.
 
 use crate::sample::coordinates::Chooser;
 use crate::surface::Way;
@@ -37,8 +37,8 @@ impl EyeWeight {
         }
     }
 
-    /// Russian roulette: paths of small weight end with probability 1 - q, survivors are divided by q. Whether the path
-    /// goes on.
+    /// Russian roulette: paths of small weight end with probability 1 - q, survivors are divided by q.
+    /// Whether the path goes on.
     #[inline]
     pub fn roulette<C: Chooser>(&mut self, chooser: &mut C) -> bool {
         let y = luminance(self.weight);
@@ -54,10 +54,11 @@ impl EyeWeight {
         survives
     }
 
-    /// Russian roulette by length: whether the path goes on after so many events. Total reflection keeps light in glass without
-    /// loss, often for good. A path of [`FREE_EVENTS`] becomes one of n events with the probability (FREE_EVENTS / n)^2, so that
-    /// its length has a mean of 2 FREE_EVENTS however it is caught; its weight grows no faster than n^2, so that light
-    /// which becomes rarer with n in any constant proportion has a finite variance.
+    /// Russian roulette by length: whether the path goes on after so many events. Total reflection keeps
+    /// light in glass without loss, often for good. A path of [`FREE_EVENTS`] becomes one of n events with
+    /// the probability (FREE_EVENTS / n)^2, so that its length has a mean of 2 FREE_EVENTS however it is
+    /// caught; its weight grows no faster than n^2, so that light which becomes rarer with n in any constant
+    /// proportion has a finite variance.
     #[inline]
     pub fn outlast<C: Chooser>(&mut self, events: u32, chooser: &mut C) -> bool {
         events <= FREE_EVENTS || {

@@ -31,23 +31,24 @@ impl Incidence {
         if self.front { self.facet } else { -self.facet }
     }
 
-    /// The shading normal where the direction arrives in front of it, else the facet's (METHOD 1); true in the second case.
+    /// The shading normal where the direction arrives in front of it, else the facet's (METHOD 1); true in
+    /// the second case.
     #[inline]
     pub(super) fn working_normal(&self) -> (DVec3, bool) {
         if self.direction.dot(self.smooth) < 0.0 { (self.smooth, false) } else { (self.facet, true) }
     }
 }
 
-/// A direction that left on the wrong side of the facet, mirrored in the facet's plane (METHOD 1); `towards` is the
-/// facet normal on the side where it must be. True where it was mirrored.
+/// A direction that left on the wrong side of the facet, mirrored in the facet's plane (METHOD 1); `towards`
+/// is the facet normal on the side where it must be. True where it was mirrored.
 #[inline]
 pub(super) fn keep_side(direction: DVec3, towards: DVec3) -> (DVec3, bool) {
     let along = direction.dot(towards);
     if along < 0.0 { (direction - 2.0 * along * towards, true) } else { (direction, false) }
 }
 
-/// A direction away from a surface, and the side it is on: state where it is known, because next to edge-on the sign
-/// of a product may disagree by rounding.
+/// A direction away from a surface, and the side it is on: state where it is known, because next to edge-on
+/// the sign of a product may disagree by rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leg {
     /// Unit, pointing away from the surface.

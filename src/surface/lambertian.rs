@@ -1,6 +1,8 @@
-//! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of arrival.
+//! A perfectly diffuse surface: scattered with the cosine law about the facet's normal, on the side of
+//! arrival.
 //!
-//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`.
+//! Scene text: `type = "lambertian"`, `reflectance` 0 to 1, or `[r, g, b]`. With a `transmittance` it is
+//! [`crate::surface::DiffuseTransmission`].
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -30,13 +32,11 @@ impl Lambertian {
 }
 
 impl Model for Lambertian {
+    const REQUIRES: &[&str] = &["diffuse scattering"];
+
     #[inline]
     fn kind(&self) -> Kind {
         if self.reflectance.luminous() > 0.0 { Kind::Scattering } else { Kind::Absorbing }
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        if self.kind() == Kind::Scattering { &["diffuse scattering"] } else { &[] }
     }
 
     fn is_coloured(&self) -> bool {

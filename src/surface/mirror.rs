@@ -27,13 +27,11 @@ impl Mirror {
 }
 
 impl Model for Mirror {
+    const REQUIRES: &[&str] = &["mirror reflection"];
+
     #[inline]
     fn kind(&self) -> Kind {
         Kind::Specular
-    }
-
-    fn requires(&self) -> &'static [&'static str] {
-        &["mirror reflection"]
     }
 
     fn is_coloured(&self) -> bool {

@@ -1,21 +1,22 @@
 //! What surfaces do with light: one contract for all materials, and a file for each.
 //!
-//! **Directions** are unit vectors in world space. That of [`Incidence`] points the way the photon travels, towards the
-//! surface, and the normals beside it stand on the side of arrival. wi and wo ([`Leg`]) both point away from the surface:
-//! light comes from wi and leaves along wo; `outward` is the facet's outward normal. Sides are state: `front` is the side
-//! that the outward normal points to.
+//! **Directions** are unit vectors in world space. That of [`Incidence`] points the way the photon travels,
+//! towards the surface, and the normals beside it stand on the side of arrival. wi and wo ([`Leg`]) both
+//! point away from the surface: light comes from wi and leaves along wo; `outward` is the facet's outward
+//! normal. Sides are state: `front` is the side that the outward normal points to.
 //!
-//! **Measures.** A photon carries flux: [`Material::scatter`] lets it go on with the probability of the albedo, and no cosine
-//! and no eta^2 is left over; what that does to a weight per channel is a matter of its [`Throughput`]. [`Material::eval`] is
-//! f, the BSDF without a cosine, and [`Material::pdf`] the density of scattered directions in solid angle; both leave
-//! out what goes on specularly, which [`Material::specular`] tells for eye paths, in luminance. Coordinates are drawn only where
-//! there is more than one outcome.
+//! **Measures.** A photon carries flux: [`Material::scatter`] lets it go on with the probability of the
+//! albedo, and no cosine and no eta^2 is left over; what that does to a weight per channel is a matter of its
+//! [`Throughput`]. [`Material::eval`] is f, the BSDF without a cosine, and [`Material::pdf`] the density of
+//! scattered directions in solid angle; both leave out what goes on specularly, which [`Material::specular`]
+//! tells for eye paths, in luminance. Coordinates are drawn only where there is more than one outcome.
 //!
-//! To add a material: a file beside these that answers [`Model`], its line in [`Material`] and in `ask` below it, its keys in
-//! `files/scene_toml/material` and docs/SCENE.md.
+//! To add a material: a file beside these that answers [`Model`], its line in [`Material`] and in `ask` below
+//! it, its keys in `files/scene_toml/material` and docs/SCENE.md.
 
 mod absorber;
 pub mod dielectric;
+pub mod diffuse_transmission;
 pub mod eye;
 pub mod incidence;
 pub mod lambertian;
@@ -34,6 +35,7 @@ use glam::DVec3;
 use crate::sample::coordinates::Chooser;
 
 pub use dielectric::Dielectric;
+pub use diffuse_transmission::DiffuseTransmission;
 pub use eye::EyeWeight;
 pub use incidence::{Incidence, Leg};
 pub use lambertian::Lambertian;
@@ -52,6 +54,8 @@ pub enum Material {
     Mirror(Mirror),
     /// Perfectly diffuse on the side of arrival.
     Lambertian(Lambertian),
+    /// A thin sheet, perfectly diffuse on both sides.
+    DiffuseTransmission(DiffuseTransmission),
     /// Scatters as a table says.
     Tabulated(Box<Tabulated>),
     /// Ends every photon.
@@ -65,6 +69,7 @@ macro_rules! ask {
             Material::Dielectric(model) => Model::$question(model, $($argument),*),
             Material::Mirror(model) => Model::$question(model, $($argument),*),
             Material::Lambertian(model) => Model::$question(model, $($argument),*),
+            Material::DiffuseTransmission(model) => Model::$question(model, $($argument),*),
             Material::Tabulated(model) => Model::$question(&**model, $($argument),*),
             Material::Absorber => Model::$question(&absorber::Absorber, $($argument),*),
         }
@@ -72,15 +77,16 @@ macro_rules! ask {
 }
 
 /// All that [`Material::requires`] answers, in the order of reports.
-pub const REQUIREMENTS: [&str; 4] =
-    ["refraction", "mirror reflection", "diffuse scattering", "tabulated scattering"];
+pub const REQUIREMENTS: [&str; 5] =
+    ["refraction", "mirror reflection", "diffuse scattering", "diffuse transmission", "tabulated scattering"];
 
 /// What became of a photon at a surface.
 #[derive(Debug, Clone, Copy)]
 pub enum Event {
     /// It ends here.
     Absorbed,
-    /// It ends here because a table sent it below the horizon, where there is nothing but the surface (METHOD 4).
+    /// It ends here because a table sent it below the horizon, where there is nothing but the surface (METHOD
+    /// 4).
     BelowHorizon,
     /// It goes on.
     Leaves {
@@ -88,8 +94,8 @@ pub enum Event {
         direction: DVec3,
         /// Whether it crossed to the other side.
         through: bool,
-        /// Whether a smooth normal made an exception necessary (METHOD 1): the photon arrived behind the smooth normal,
-        /// or was sent to the wrong side of the facet and mirrored back.
+        /// Whether a smooth normal made an exception necessary (METHOD 1): the photon arrived behind the
+        /// smooth normal, or was sent to the wrong side of the facet and mirrored back.
         corrected: bool,
     },
 }
@@ -112,8 +118,8 @@ pub struct Way {
     pub direction: DVec3,
     /// Part of the flux of light on this way, towards the eye, that goes on to the eye, by channel.
     pub part: [f64; 3],
-    /// (n_i / n_t)^2, of the media before and behind the surface: luminance seen from the first is that part of the
-    /// luminance in the second. 1 where the medium is the same.
+    /// (n_i / n_t)^2, of the media before and behind the surface: luminance seen from the first is that part
+    /// of the luminance in the second. 1 where the medium is the same.
     pub luminance_factor: f64,
 }
 
@@ -128,12 +134,17 @@ pub struct Ways {
     pub lossless: bool,
 }
 
-/// The contract of [`Material`], for one model. Where there is a default it is that of a model that has no such thing.
+/// The contract of [`Material`], for one model. Where there is a default it is that of a model that has no
+/// such thing.
 pub trait Model {
+    /// [`Material::requires`], of one that lets light go on.
+    const REQUIRES: &[&str];
     /// [`Material::kind`].
     fn kind(&self) -> Kind;
     /// [`Material::requires`].
-    fn requires(&self) -> &'static [&'static str];
+    fn requires(&self) -> &'static [&'static str] {
+        if self.kind() == Kind::Absorbing { &[] } else { Self::REQUIRES }
+    }
     /// [`Material::is_coloured`].
     fn is_coloured(&self) -> bool;
     /// [`Material::scatter`].
@@ -190,7 +201,8 @@ impl Material {
         ask!(self, is_coloured())
     }
 
-    /// Whether light passes into another medium. (A sheet that scatters light through it has the same on both sides.)
+    /// Whether light passes into another medium. (A sheet that scatters light through it has the same on both
+    /// sides.)
     pub fn is_transparent(&self) -> bool {
         ask!(self, is_transparent())
     }
@@ -206,21 +218,23 @@ impl Material {
         ask!(self, scatter(at, chooser, carried))
     }
 
-    /// f, 1/sr, by channel: luminance towards wo per illuminance from wi. What goes on specularly has no value: 0.
+    /// f, 1/sr, by channel: luminance towards wo per illuminance from wi. What goes on specularly has no
+    /// value: 0.
     #[inline]
     pub fn eval(&self, outward: DVec3, wi: Leg, wo: Leg) -> [f64; 3] {
         ask!(self, eval(outward, wi, wo))
     }
 
-    /// f where it is the same for all wi and wo of one side and 0 for those of different sides, 1/sr, by channel.
+    /// f where it is the same for all wi and wo of one side and 0 for those of different sides, 1/sr, by
+    /// channel.
     #[inline]
     pub fn even_value(&self) -> Option<[f64; 3]> {
         ask!(self, even_value())
     }
 
-    /// Density, 1/sr in solid angle, of the directions into which [`Self::scatter`] sends photons of white light from wi,
-    /// times the probability that it scatters them: the luminance of f times the cosine of wo. Its integral over all wo is the
-    /// luminous albedo, less what goes on specularly or below the horizon.
+    /// Density, 1/sr in solid angle, of the directions into which [`Self::scatter`] sends photons of white
+    /// light from wi, times the probability that it scatters them: the luminance of f times the cosine of wo.
+    /// Its integral over all wo is the luminous albedo, less what goes on specularly or below the horizon.
     #[inline]
     pub fn pdf(&self, outward: DVec3, wi: Leg, wo: Leg) -> f64 {
         luminance(self.eval(outward, wi, wo)) * wo.direction.dot(outward).abs()
@@ -232,8 +246,9 @@ impl Material {
         ask!(self, specular(at))
     }
 
-    /// Proposals that the scattering of a photon of white light takes by rejection, on average over whether it is scattered: inside
-    /// the cells of a table, and against a slice's largest value. 0 where no table is sampled.
+    /// Proposals that the scattering of a photon of white light takes by rejection, on average over whether
+    /// it is scattered: inside the cells of a table, and against a slice's largest value. 0 where no table is
+    /// sampled.
     pub fn proposals(&self, at: &Incidence) -> [f64; 2] {
         ask!(self, proposals(at))
     }

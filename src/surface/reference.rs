@@ -10,8 +10,8 @@ use crate::math::frame::{frame_about, unit};
 pub enum Reference {
     /// The part of this direction that lies along the surface: brushed straight.
     Along(DVec3),
-    /// Around this axis, as brushed on a lathe: counter-clockwise seen from its tip where the outward normal points away
-    /// from the axis, the other way where it points to the axis.
+    /// Around this axis, as brushed on a lathe: counter-clockwise seen from its tip where the outward normal
+    /// points away from the axis, the other way where it points to the axis.
     Around(DVec3),
 }
 
@@ -38,8 +38,8 @@ impl Reference {
         })
     }
 
-    /// The unit reference direction across the unit normal `outward`. Where the normal is the direction or axis itself, some
-    /// fixed one stands in.
+    /// The unit reference direction across the unit normal `outward`. Where the normal is the direction or
+    /// axis itself, some fixed one stands in.
     #[inline]
     pub fn tangent(&self, outward: DVec3) -> DVec3 {
         self.along(outward).normalize()

@@ -3,21 +3,19 @@
 //! Scene text: `reflectance = 0.7`, or `reflectance = [r, g, b]`, each 0 to 1.
 
 use crate::error::Invalid;
-use crate::error::invalid::number;
+use crate::error::invalid::Interval;
 use crate::units::LUMINANCE_OF_RGB;
 
-/// Parts of the flux that are reflected, by channel, and the part of white light's luminous flux that they make.
+/// Parts of the flux that are reflected, by channel, and the part of white light's luminous flux that they
+/// make.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reflectance {
     luminous: f64,
     rgb: [f64; 3],
 }
 
-/// Least and greatest part of a flux.
-pub const RANGE: [f64; 2] = [0.0, 1.0];
-
-/// [`RANGE`] in words.
-pub const REQUIRED: &str = "a reflectance from 0 to 1";
+/// Reflected parts.
+pub const REFLECTANCE: Interval = Interval { low: 0.0, high: 1.0, words: "a reflectance from 0 to 1" };
 
 impl Reflectance {
     /// The same part of every channel.
@@ -33,13 +31,13 @@ impl Reflectance {
     /// # Errors
     /// Parts that are not from 0 to 1.
     pub fn rgb(rgb: [f64; 3]) -> Result<Self, Invalid> {
-        Self::named("reflectance", rgb, REQUIRED)
+        Self::named("reflectance", rgb, &REFLECTANCE)
     }
 
     /// Those of a parameter of another name.
-    pub(super) fn named(what: &'static str, rgb: [f64; 3], required: &'static str) -> Result<Self, Invalid> {
+    pub(super) fn named(what: &'static str, rgb: [f64; 3], range: &Interval) -> Result<Self, Invalid> {
         for part in rgb {
-            number(what, part, RANGE, required)?;
+            range.check(what, part)?;
         }
         let [r, g, b] = rgb;
         // The sum would round.

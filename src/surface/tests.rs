@@ -8,8 +8,8 @@ use super::*;
 use crate::sample::coordinates::{Coordinates, Purpose};
 use crate::sequence::owen::OwenPoints;
 
-/// A chooser that follows a script: events and uniforms in order. It panics when it runs out, so a test also counts what
-/// is asked for.
+/// A chooser that follows a script: events and uniforms in order. It panics when it runs out, so a test also
+/// counts what is asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Script {
     pub events: Vec<bool>,
@@ -46,12 +46,17 @@ fn lambertian(reflectance: f64) -> Material {
     Material::Lambertian(Lambertian::new(part(reflectance)))
 }
 
+fn sheet(reflectance: f64, transmittance: f64) -> Material {
+    Material::DiffuseTransmission(DiffuseTransmission::new([reflectance; 3], [transmittance; 3]).unwrap())
+}
+
 /// Every material but tables, of which tests of their own know more.
 fn all() -> Vec<Material> {
     vec![
         Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap()),
         Material::Mirror(Mirror::new(part(0.9))),
         lambertian(0.7),
+        sheet(0.5, 0.3),
         Material::Absorber,
     ]
 }
@@ -111,7 +116,8 @@ fn assert_density(material: &Material, events: &[bool]) {
     }
 }
 
-/// Integral of `pdf` over the directions of each side (that of arrival first), by the midpoint rule; relative error below 1e-6.
+/// Integral of `pdf` over the directions of each side (that of arrival first), by the midpoint rule; relative
+/// error below 1e-6.
 fn albedo(material: &Material, at: &Incidence) -> [f64; 2] {
     let (rows, columns) = (1000, 8);
     let wi = Leg { direction: -at.direction, front: at.front };
@@ -152,6 +158,16 @@ fn the_density_of_a_lambertian_surface_is_its_pdf() {
 }
 
 #[test]
+fn the_density_of_a_diffuse_sheet_is_its_pdf_on_both_sides() {
+    for reflect in [true, false] {
+        assert_density(&sheet(0.5, 0.3), &[true, reflect]);
+        assert_density(&sheet(0.75, 0.25), &[reflect]);
+    }
+    assert_density(&sheet(0.0, 0.3), &[true]);
+    assert_density(&sheet(0.0, 1.0), &[]);
+}
+
+#[test]
 fn flux_goes_where_the_density_says() {
     for material in all() {
         for at in incidences() {
@@ -166,6 +182,8 @@ fn flux_goes_where_the_density_says() {
     }
     let [front, back] = albedo(&lambertian(0.7), &incidences()[1]);
     assert!((front - 0.7).abs() < 1e-6 && back == 0.0);
+    let [front, back] = albedo(&sheet(0.5, 0.3), &incidences()[2]);
+    assert!((front - 0.5).abs() < 1e-6 && (back - 0.3).abs() < 1e-6);
 }
 
 #[test]

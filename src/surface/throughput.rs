@@ -1,7 +1,8 @@
 //! What a photon carries from reflection to reflection beside its flux.
 //!
-//! The walk is compiled for one of these, so that a scene pays only for what it names: [`Grey`] carries nothing, [`Rgb`] a
-//! weight per channel under the same roulette, [`Fixed`] a weight per channel through a fixed number of reflections.
+//! The walk is compiled for one of these, so that a scene pays only for what it names: [`Grey`] carries
+//! nothing, [`Rgb`] a weight per channel under the same roulette, [`Fixed`] a weight per channel through a
+//! fixed number of reflections.
 
 use crate::sample::coordinates::Chooser;
 use crate::surface::reflectance::{Reflectance, luminance};
@@ -14,12 +15,12 @@ pub trait Throughput: Copy + Send + Sync {
     fn tinted(self, colour: [f64; 3]) -> Self;
     /// The photon meets a surface that reflects these parts: whether it goes on.
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool;
-    /// The photon meets a table of this albedo by channel: whether it is scattered. `rest_goes_on`: what the table leaves is
-    /// not absorbed.
+    /// The photon meets a table of this albedo by channel: whether it is scattered. `rest_goes_on`: what the
+    /// table leaves is not absorbed.
     fn scatter<C: Chooser>(&mut self, albedo: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate;
-    /// It was scattered where the channels have these values (in any one unit), in a direction whose density is their mean
-    /// weighted by the shares that [`Self::scatter`] gave; `part` is the part of white light's luminous flux that was scattered, 1 where the
-    /// rest went on.
+    /// It was scattered where the channels have these values (in any one unit), in a direction whose density
+    /// is their mean weighted by the shares that [`Self::scatter`] gave; `part` is the part of white light's
+    /// luminous flux that was scattered, 1 where the rest went on.
     fn scattered(&mut self, values: [f64; 3], part: f64);
 }
 
@@ -115,7 +116,8 @@ impl Throughput for Rgb {
 
     #[inline]
     fn scattered(&mut self, values: [f64; 3], _: f64) {
-        // The density of the direction is Y(w values), whatever the event's probability: divided by it, Y stays 1.
+        // The density of the direction is Y(w values), whatever the event's probability: divided by it, Y
+        // stays 1.
         let seen = product(self.weight, values);
         let y = luminance(seen);
         // Zero only on an edge where the table vanishes, which is reached at u = 0 and nowhere else.
@@ -125,8 +127,8 @@ impl Throughput for Rgb {
     }
 }
 
-/// A weight per channel and a number of reflections that are still to come; no roulette at reflections. (A dielectric
-/// chooses as ever and counts as no reflection.)
+/// A weight per channel and a number of reflections that are still to come; no roulette at reflections. (A
+/// dielectric chooses as ever and counts as no reflection.)
 #[derive(Debug, Clone, Copy)]
 pub struct Fixed {
     weight: [f64; 3],
@@ -139,7 +141,8 @@ impl Fixed {
         Self { weight: [1.0; 3], left: reflections }
     }
 
-    /// Weights of red, green and blue: those of the emitter's colour times the reflectances so far; at most 1 in white light.
+    /// Weights of red, green and blue: those of the emitter's colour times the reflectances so far; at most 1
+    /// in white light.
     #[inline]
     pub fn weight(&self) -> [f64; 3] {
         self.weight

@@ -37,8 +37,8 @@ impl Counts {
     }
 }
 
-/// Sum and sum of squares of a count over replicates, cell by cell: all that a standard error needs, whatever the
-/// number of replicates.
+/// Sum and sum of squares of a count over replicates, cell by cell: all that a standard error needs, whatever
+/// the number of replicates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Moments {
     /// Sum of the counts.

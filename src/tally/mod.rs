@@ -1,8 +1,8 @@
 //! Order-free exact sums of hits.
 //!
-//! Where every photon has unit weight a tally is an array of integer counts; where photons carry weights these are rounded
-//! to a quantum and added as integers. So tally(A and B) = merge(tally(A), tally(B)) for any split of the photons, bit for
-//! bit.
+//! Where every photon has unit weight a tally is an array of integer counts; where photons carry weights
+//! these are rounded to a quantum and added as integers. So tally(A and B) = merge(tally(A), tally(B)) for
+//! any split of the photons, bit for bit.
 
 pub mod counts;
 pub mod receiver;

@@ -1,12 +1,11 @@
 //! Receivers: arrivals on a surface, sorted into cells.
 //!
-//! A receiver counts flux arriving before the event, whatever the material, on the sides and of the history it asks for.
-//! A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is the (u = 0, v = 1) corner. A
-//! mesh has a cell a face.
+//! A receiver counts flux arriving before the event, whatever the material, on the sides and of the history
+//! it asks for. A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is
+//! the (u = 0, v = 1) corner. A mesh has a cell a face.
 
 use crate::geometry::{Geometry, Hit};
 use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
-use crate::surface::Throughput;
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
@@ -102,7 +101,8 @@ impl<'s> Receivers<'s> {
     }
 }
 
-/// Adds arrivals to a scene's receivers. Every photon counts one, whatever it carries: of coloured ones the luminance is 1.
+/// Adds arrivals to a scene's receivers. Every photon counts one, whatever it carries: of coloured ones the
+/// luminance is 1.
 #[derive(Debug, Clone, Copy)]
 pub struct ReceiverSink<'r, 's> {
     receivers: &'r Receivers<'s>,
@@ -116,8 +116,8 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
     }
 }
 
-/// Adds arrivals of photons that start with a weight to a scene's receivers, in units of a fixed fraction of a photon:
-/// integers, so that sums do not depend on the order.
+/// Adds arrivals of photons that start with a weight to a scene's receivers, in units of a fixed fraction of
+/// a photon: integers, so that sums do not depend on the order.
 #[derive(Debug, Clone, Copy)]
 pub struct FixedPointSink<'r, 's> {
     receivers: &'r Receivers<'s>,
@@ -135,5 +135,132 @@ impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn start(&mut self, weight: f64) {
         self.amount = (weight * self.units_per_photon + 0.5) as u64;
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::geometry::{Rectangle, Shape, Surface, Whereabouts, box_mesh};
+    use crate::scene::receiver::ReceiverSpec;
+    use crate::surface::Grey;
+
+    pub const BOTH: (ReceiverSide, ReceiverEvents) = (ReceiverSide::Both, ReceiverEvents::All);
+
+    /// The unit square at z = 0, its front up, and a box from z = 1 to 2 above it.
+    pub fn square_and_box() -> Geometry {
+        let square = Shape::Rectangle(Rectangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap());
+        let block = Shape::Mesh(box_mesh(DVec3::Z, DVec3::new(1.0, 1.0, 2.0)).unwrap());
+        let named = |name: &str, shape| Surface { name: name.into(), shape };
+        Geometry::build(vec![named("square", square), named("box", block)]).unwrap()
+    }
+
+    pub fn receiver(
+        geometry: &Geometry,
+        surface: &str,
+        cells: Option<[u32; 2]>,
+        (side, events): (ReceiverSide, ReceiverEvents),
+    ) -> Receiver {
+        let mut spec = ReceiverSpec::new("r", surface).unwrap().on_side(side).of_events(events);
+        if let Some(cells) = cells {
+            spec = spec.with_cells(cells).unwrap();
+        }
+        Receiver::new(&spec, geometry).unwrap()
+    }
+
+    /// Sends a photon straight down (or, from below, up) to the surface next to a point.
+    pub fn send<T>(
+        geometry: &Geometry,
+        sink: &mut impl Sink<T>,
+        carried: &T,
+        (x, y, z): (f64, f64, f64),
+        events: u32,
+    ) {
+        let whereabouts = Whereabouts::default();
+        let direction = if z < 0.0 { DVec3::Z } else { DVec3::NEG_Z };
+        let hit = geometry.nearest(DVec3::new(x, y, z), direction, &whereabouts, &mut 0).unwrap();
+        sink.arrive(&Arrival { hit: &hit, direction, events, carried, whereabouts: &whereabouts });
+    }
+
+    fn counts(receivers: &Receivers<'_>, receiver: usize) -> Vec<u64> {
+        receivers.counts(receiver).iter().collect()
+    }
+
+    #[test]
+    fn cells_run_by_rows_from_the_top_left() {
+        let geometry = square_and_box();
+        let all = [receiver(&geometry, "square", Some([4, 2]), BOTH)];
+        let mut receivers = Receivers::new(&geometry, &all);
+        for (x, y, cell) in [(0.1, 0.9, 0), (0.3, 0.9, 1), (0.9, 0.6, 3), (0.1, 0.1, 4), (0.6, 0.4, 6)] {
+            receivers.clear();
+            send(&geometry, &mut receivers.sink(), &Grey, (x, y, 0.5), 0);
+            let expected: Vec<u64> = (0..8).map(|i| u64::from(i == cell)).collect();
+            assert_eq!(counts(&receivers, 0), expected, "{x} {y}");
+        }
+        // The far borders belong to the last cells.
+        let mut hit =
+            geometry.nearest(DVec3::splat(0.5), DVec3::NEG_Z, &Whereabouts::default(), &mut 0).unwrap();
+        for (x, y, cell) in [(1.0, 0.0, 7), (0.0, 1.0, 0), (1.0, 1.0, 3), (0.0, 0.0, 4), (0.25, 0.5, 1)] {
+            hit.position = DVec3::new(x, y, 0.0);
+            assert_eq!(receivers.routes.cell(&all[0], &hit), Some(cell), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn sides_and_histories_count_as_asked() {
+        let geometry = square_and_box();
+        use ReceiverEvents::{All, Direct, Indirect};
+        use ReceiverSide::{Back, Both, Front};
+        // Arrivals on the front: 1 direct, 2 later ones; on the back: 4 and 8.
+        let asked = [
+            (Both, All, 15),
+            (Both, Direct, 5),
+            (Both, Indirect, 10),
+            (Front, All, 3),
+            (Front, Direct, 1),
+            (Front, Indirect, 2),
+            (Back, All, 12),
+            (Back, Direct, 4),
+            (Back, Indirect, 8),
+        ];
+        let all = asked.map(|(side, events, _)| receiver(&geometry, "square", Some([1, 1]), (side, events)));
+        let receivers = Receivers::new(&geometry, &all);
+        let mut sink = receivers.sink();
+        for (times, z, events) in [(1, 0.5, 0), (2, 0.5, 1), (4, -0.5, 0), (8, -0.5, 3)] {
+            (0..times).for_each(|_| send(&geometry, &mut sink, &Grey, (0.5, 0.5, z), events));
+        }
+        for (i, asked) in asked.into_iter().enumerate() {
+            assert_eq!(counts(&receivers, i), [asked.2], "{asked:?}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_has_a_cell_a_face_and_other_surfaces_do_not_count() {
+        let geometry = square_and_box();
+        let all = [receiver(&geometry, "box", None, BOTH), receiver(&geometry, "square", Some([1, 1]), BOTH)];
+        let receivers = Receivers::new(&geometry, &all);
+        let mut sink = receivers.sink();
+        // Faces -x, +x, -y, +y, -z, +z, two triangles each.
+        for (x, y) in [(0.2, 0.7), (0.3, 0.9), (0.8, 0.1)] {
+            send(&geometry, &mut sink, &Grey, (x, y, 3.0), 1);
+        }
+        send(&geometry, &mut sink, &Grey, (0.5, 0.4, 0.5), 1);
+        assert_eq!(counts(&receivers, 0), [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2]);
+        assert_eq!(counts(&receivers, 1), [1]);
+    }
+
+    #[test]
+    fn fixed_point_weights_are_rounded_to_the_nearest_unit() {
+        let geometry = square_and_box();
+        let all = [receiver(&geometry, "square", Some([2, 1]), BOTH)];
+        let receivers = Receivers::new(&geometry, &all);
+        let mut sink = receivers.fixed_point_sink(8.0);
+        for (weight, x) in [(0.3, 0.2), (0.32, 0.2), (2.0, 0.7), (0.05, 0.7)] {
+            Sink::<Grey>::start(&mut sink, weight);
+            send(&geometry, &mut sink, &Grey, (x, 0.5, 0.5), 0);
+        }
+        assert_eq!(counts(&receivers, 0), [2 + 3, 16]);
     }
 }

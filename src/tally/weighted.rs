@@ -1,8 +1,8 @@
 //! Receivers of weighted photons: sums of weights by channel in the cells of a scene's receivers.
 //!
-//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of photons and
-//! of arrivals a photon can make, so that no sum can overflow. Integers may be added in any order, by any thread, and give
-//! the same bits; each arrival is rounded by at most half a quantum.
+//! A weight is a fixed-point integer: the quantum is a power of two chosen before tracing, from the number of
+//! photons and of arrivals a photon can make, so that no sum can overflow. Integers may be added in any
+//! order, by any thread, and give the same bits; each arrival is rounded by at most half a quantum.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -33,11 +33,12 @@ pub struct WeightedReceivers<'s> {
 }
 
 impl<'s> WeightedReceivers<'s> {
-    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at most `arrivals`
-    /// arrivals of weights from 0 to 1.
+    /// Sums at zero for these receivers. The tally must not see more than `photons` photons, each with at
+    /// most `arrivals` arrivals of weights from 0 to 1.
     ///
     /// # Errors
-    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the point.
+    /// More than [`MOST_WEIGHTED_CELLS`] cells; so many photons that less than 32 bits are left after the
+    /// point.
     pub fn new(
         geometry: &'s Geometry,
         receivers: &'s [Receiver],
@@ -110,7 +111,42 @@ impl Sink<Fixed> for ChannelSink<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::receiver::tests::{BOTH, receiver, send, square_and_box};
     use super::*;
+    use crate::surface::Throughput;
+
+    #[test]
+    fn weights_add_up_by_channel_and_receiver() {
+        let geometry = square_and_box();
+        let all = [[2, 1], [1, 1]].map(|cells| receiver(&geometry, "square", Some(cells), BOTH));
+        let tally = WeightedReceivers::new(&geometry, &all, 4, 1).unwrap();
+        let mut sink = tally.sink();
+        send(&geometry, &mut sink, &Fixed::white(0), (0.2, 0.5, 0.5), 0);
+        let tinted = Fixed::white(0).tinted([1.0, 0.5, 0.25]);
+        send(&geometry, &mut sink, &tinted, (0.7, 0.5, -0.5), 1);
+        send(&geometry, &mut sink, &tinted, (0.7, 0.5, 0.5), 1);
+        assert_eq!(tally.weight(0), [1.0; 3]);
+        assert_eq!(tally.weight(1), [2.0, 1.0, 0.5]);
+        assert_eq!(tally.weight(2), [3.0, 2.0, 1.5]);
+    }
+
+    #[test]
+    fn an_arrival_is_rounded_to_the_nearest_quantum() {
+        let geometry = square_and_box();
+        let all = [receiver(&geometry, "square", Some([1, 1]), BOTH)];
+        let tally = WeightedReceivers::new(&geometry, &all, (1 << 32) - 1, 1).unwrap();
+        let quantum = 1.0 / (1u64 << 32) as f64;
+        let carried = Fixed::white(0).tinted([0.49, 0.51, 1.2].map(|w| w * quantum));
+        send(&geometry, &mut tally.sink(), &carried, (0.5, 0.5, 0.5), 0);
+        assert_eq!(tally.weight(0), [0.0, quantum, quantum]);
+    }
+
+    #[test]
+    fn too_many_cells_are_refused() {
+        let geometry = square_and_box();
+        let all = [[1 << 12, 1 << 12], [1, 1]].map(|cells| receiver(&geometry, "square", Some(cells), BOTH));
+        assert_eq!(WeightedReceivers::new(&geometry, &all, 1, 1).unwrap_err().kind(), Kind::Limit);
+    }
 
     #[test]
     fn the_quantum_leaves_room_for_every_arrival() {

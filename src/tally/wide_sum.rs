@@ -10,7 +10,8 @@ pub struct WideSum {
 }
 
 impl WideSum {
-    /// Adds this much. Of every carry out of the lower half exactly one addition is told, so the sum is exact whatever the order.
+    /// Adds this much. Of every carry out of the lower half exactly one addition is told, so the sum is exact
+    /// whatever the order.
     #[inline]
     pub fn add(&self, amount: u128) {
         let (low, mut high) = (amount as u64, (amount >> 64) as u64);
@@ -49,5 +50,17 @@ mod tests {
             assert_eq!(sum.get(), expected);
             assert_eq!((sum.take(), sum.get()), (expected, 0));
         }
+    }
+
+    #[test]
+    fn threads_lose_no_carry() {
+        let mut sum = WideSum::default();
+        let amount = u128::from(u64::MAX) - 12345;
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..10_000).for_each(|_| sum.add(amount)));
+            }
+        });
+        assert_eq!(sum.take(), 40_000 * amount);
     }
 }

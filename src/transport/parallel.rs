@@ -105,20 +105,9 @@ impl Order {
 }
 
 /// Traces the photons of these indices, each of which starts with the throughput `carried` in its emitter's colour:
-/// [`crate::surface::Grey`] unless the scene has colour. `sink` makes one handle a batch, all of which add to the same sums.
+/// [`crate::surface::Grey`] unless the scene has colour. `emitters` are the scene's, or give its light in another way
+/// ([`Emitters::with_weights`]). `sink` makes one handle a batch, all of which add to the same sums.
 pub fn trace_range<P: Points, S: Sink<T>, T: Throughput>(
-    scene: &Scene,
-    points: &P,
-    range: Range<u64>,
-    carried: T,
-    how: How<'_>,
-    sink: impl Fn() -> S + Sync,
-) -> Traced {
-    trace_from(scene, &scene.emitters, points, range, carried, how, sink)
-}
-
-/// As [`trace_range`], of emitters that give the scene's light in another way ([`Emitters::with_weights`]).
-pub fn trace_from<P: Points, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     emitters: &Emitters,
     points: &P,

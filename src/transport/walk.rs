@@ -10,8 +10,9 @@ use crate::surface::{Event, Grey, Incidence, Throughput};
 
 use super::census::Exceptions;
 
-/// Events after which a photon is taken to be caught for ever and is killed, and counted as such. It is a guard against
-/// scenes that absorb nothing, not a bounce cap: with an albedo of 0.999 one photon in 10^43 gets this far.
+/// Events after which a photon is taken to be caught for ever and is killed, and counted as such. It is a
+/// guard against scenes that absorb nothing, not a bounce cap: with an albedo of 0.999 one photon in 10^43
+/// gets this far.
 pub const MAX_EVENTS: u32 = 100_000;
 
 /// A photon reaching a surface, before anything happens to it.

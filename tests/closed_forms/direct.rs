@@ -1,60 +1,14 @@
 //! Light that meets a plane straight or by way of a plane mirror, against the integral of I cos / d^2 in every cell.
 //!
-//! The intensity is interpolated here from the file's own table at the vertical and horizontal angles of each direction;
-//! nothing of the sampler is used.
+//! The intensity is that of the file's own table ([`Lamp`]); nothing of the sampler is used.
 
-use caustix::files::lm63;
-use caustix::photometry::Photometry;
-use caustix::photometry::web::PhotometricType;
 use caustix::sequence::Sequence;
 use glam::DVec3;
 
-use crate::support::data::project;
 use crate::support::judge::{assert_cells, assert_total};
+use crate::support::lamp::Lamp;
 use crate::support::quadrature::cell_means;
 use crate::support::scenes::{run, scene};
-
-/// A luminaire as docs/PHOTOMETRIC_FRAME.md places it.
-struct Lamp {
-    photometry: Photometry,
-    position: DVec3,
-    aim: DVec3,
-    up: DVec3,
-}
-
-impl Lamp {
-    fn new(file: &str, position: DVec3, aim: DVec3, up: DVec3) -> Self {
-        let photometry = lm63::read(project().join("ies").join(file)).unwrap();
-        let aim = aim.normalize();
-        let up = (up - up.dot(aim) * aim).normalize();
-        Self { photometry, position, aim, up }
-    }
-
-    /// Luminous intensity [cd] towards a direction (unit).
-    fn intensity_cd(&self, direction: DVec3) -> f64 {
-        let right = self.aim.cross(self.up);
-        let [a, u, r] = [self.aim, self.up, right].map(|axis| direction.dot(axis));
-        let (v, h) = match self.photometry.web.photometric_type {
-            // u x a = -r.
-            PhotometricType::C => (a.clamp(-1.0, 1.0).acos(), (-r).atan2(u)),
-            PhotometricType::A => (u.clamp(-1.0, 1.0).asin(), r.atan2(a)),
-            PhotometricType::B => (u.atan2(a), r.clamp(-1.0, 1.0).asin()),
-        };
-        self.photometry.web.intensity_cd(v.to_degrees(), h.to_degrees()) * self.photometry.factor()
-    }
-
-    /// Illuminance [lx] that it alone gives at a point of the plane z = 0, from above.
-    fn illuminance_lx(&self, point: DVec3) -> f64 {
-        let to = point - self.position;
-        let distance = to.length();
-        self.intensity_cd(to / distance) * (-to.z / distance) / (distance * distance)
-    }
-
-    /// As it is seen in a mirror in the plane x = `x`.
-    fn mirrored_illuminance_lx(&self, x: f64, point: DVec3) -> f64 {
-        self.illuminance_lx(DVec3::new(2.0 * x - point.x, point.y, point.z))
-    }
-}
 
 const AIM: DVec3 = DVec3::new(0.25, 0.15, -1.0);
 const UP: DVec3 = DVec3::new(0.3, 1.0, 0.2);
@@ -102,7 +56,7 @@ fn files_of_every_type_light_a_bare_plane_as_the_integral_says() {
         [("headlamp_a.ies", 24), ("floodlight_b.ies", 6), ("wavy_glass.ies", 10), ("pool_lamp.ies", 4)]
     {
         let lamp = Lamp::new(file, POSITION, AIM, UP);
-        let exact = cell_means(CELLS, CELLS, panels, |u, v| lamp.illuminance_lx(on_plate(u, v)));
+        let exact = cell_means(CELLS, CELLS, panels, |u, v| lamp.illuminance_lx(on_plate(u, v), DVec3::Z));
         let scene = scene(&emitter(file));
         let outcome = run(&scene, Sequence::SobolOwen, 1 << 16, 16, 1);
         assert_cells(file, &scene, &outcome, 0, &exact);
@@ -146,8 +100,8 @@ edge_v = [0.0, 0.0, 3.0]
             );
         let scene = scene(&text);
         let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 2);
-        let direct = |u, v| lamp.illuminance_lx(on_plate(u, v));
-        let image = |u, v| reflectance * lamp.mirrored_illuminance_lx(plane, on_plate(u, v));
+        let direct = |u, v| lamp.illuminance_lx(on_plate(u, v), DVec3::Z);
+        let image = |u, v| reflectance * lamp.mirrored_illuminance_lx(plane, on_plate(u, v), DVec3::Z);
         let maps = [
             ("direct", cell_means(CELLS, CELLS, 5, direct)),
             ("image source", cell_means(COARSE, COARSE, 10, image)),

@@ -91,7 +91,9 @@ fn each_photon_starts_with_its_own_emitter_s_colour() {
         interrupt: &AtomicBool::new(false),
         progress: &|_| {},
     };
-    trace_range(&scene, &OwenPoints::new(1, 0), 0..4096, Rgb::WHITE, how, || FirstWeights(&weights));
+    trace_range(&scene, &scene.emitters, &OwenPoints::new(1, 0), 0..4096, Rgb::WHITE, how, || {
+        FirstWeights(&weights)
+    });
     let weights = weights.into_inner().unwrap();
     let count = |c: [f64; 3]| weights.iter().filter(|w| **w == c).count();
     // 100 lm against 300 lm: a net of 4096 points splits exactly, up to the point on the edge.
@@ -118,7 +120,9 @@ fn a_walk_that_carries_no_colour_is_not_touched_by_it() {
             progress: &|_| {},
         };
         let scene = scene(&[lamp], "0.5", "all");
-        trace_range(&scene, &OwenPoints::new(1, 0), 0..512, Grey, how, || Directions(&found));
+        trace_range(&scene, &scene.emitters, &OwenPoints::new(1, 0), 0..512, Grey, how, || {
+            Directions(&found)
+        });
         let mut found = found.into_inner().unwrap();
         found.sort_unstable();
         found

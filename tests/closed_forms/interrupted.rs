@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use caustix::emitter::{Emitter, Isotropic};
 use caustix::error::Kind;
-use caustix::geometry::{Rectangle, Shape, Surface};
+use caustix::geometry::Rectangle;
 use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use caustix::scene::{Scene, SceneBuilder};
 use caustix::surface::Material;

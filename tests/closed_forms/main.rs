@@ -6,6 +6,7 @@ mod support;
 
 mod coverage;
 mod determinism;
+mod diffuse_sheet;
 mod direct;
 mod disc;
 mod discontinuous;

@@ -104,7 +104,12 @@ fn powers_of_two_change_no_hit() {
                 run(&original, Sequence::SobolOwen, 1 << 13, 4, 2),
                 run(&other, Sequence::SobolOwen, 1 << 13, 4, 2),
             );
-            assert_eq!((a.cells, a.ledger, a.census), (b.cells, b.ledger, b.census), "{}", file.display());
+            assert_eq!(
+                (a.cells(), &a.ledger, &a.census),
+                (b.cells(), &b.ledger, &b.census),
+                "{}",
+                file.display()
+            );
             assert_eq!(a.photon_lm.to_bits(), b.photon_lm.to_bits());
         }
     }

@@ -1,21 +1,22 @@
 //! The photon map's pictures of caustics against splatted ones: what the bias figure promises, and how the bias shrinks.
 //! `examples/picture_bias.rs` measures the same with more photons and on more scenes.
 
-use caustix::lab::study::picture_bias::{Reference, Row, mapped, rate, splatted};
 use caustix::scene::camera::{Bandwidth, CameraSpec};
 
+use crate::picture_bias::{Reference, Row, mapped, rate, splatted};
 use crate::support::caustic_views::{View, ball, pane, plan};
+use crate::support::pictures::camera;
 
 const REPLICATES: u32 = 8;
 const SEEDS: u64 = 6;
 const LADDER: [u32; 3] = [14, 16, 18];
 
 fn reference(view: &View) -> Reference {
-    splatted(&view.scene, &view.spec, &plan(22, 16, 1000).unwrap()).unwrap()
+    splatted(&view.scene, &camera(view.spec.clone()), &plan(22, 16, 1000).unwrap()).unwrap()
 }
 
 fn row(view: &View, reference: &Reference, bandwidth: Bandwidth, m: u32, seeds: u64) -> Row {
-    let spec = CameraSpec { bandwidth, ..view.spec.clone() };
+    let spec = camera(CameraSpec { bandwidth, ..view.spec.clone() });
     let picture = |seed| mapped(&view.scene, &spec, &plan(m, REPLICATES, seed).unwrap()).unwrap();
     let row = Row::new(reference, 1 << m, &(1..=seeds).map(picture).collect::<Vec<_>>());
     println!("{} {bandwidth:?}: {row:.4?}", view.name);

@@ -104,6 +104,26 @@ fn l_s_d_e_a_plate_lit_by_mirror() {
     assert_none("L S D E by shadow rays", seen.direct);
 }
 
+/// A sheet that reflects 0.3 and transmits 0.4, in the place of the plate.
+fn paper() -> String {
+    floor("plate", "paper", [0.0; 3], 1.0)
+        + "[material.paper]\ntype = \"lambertian\"\nreflectance = 0.3\ntransmittance = 0.4\n"
+}
+
+#[test]
+fn l_s_d_e_and_l_d_e_a_sheet_seen_from_both_sides() {
+    let [beam, mirror, _] = turned_beam();
+    let lit_by_mirror = scene(&[beam, mirror, paper()]);
+    let lit_by_lamp = scene(&[lamp([0.0, 0.0, 2.0], 4.0 * PI * 100.0), paper()]);
+    for (z, part) in [(1.0, 0.3), (-1.0, 0.4)] {
+        let seen = pixel(&lit_by_mirror, &narrow([1.5, -1.0, z], [0.0; 3]), 12, 0.2);
+        assert_close("L S D E at a sheet", seen.caustic, SILVER * 100.0 / (PI * 0.25) * part / PI, 0.02);
+        assert_none("L S D E at a sheet by shadow rays", seen.direct);
+        let seen = pixel(&lit_by_lamp, &narrow([1.0, -1.0, 1.5 * z], [0.6, 0.0, 0.0]), 8, 0.1);
+        assert_close("L D E at a sheet", seen.direct, 100.0 * 2.0 / 4.36f64.powf(1.5) * part / PI, 1e-4);
+    }
+}
+
 #[test]
 fn l_s_d_s_e_a_plate_lit_by_mirror_and_seen_by_mirror() {
     let mut parts = turned_beam().to_vec();

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use caustix::geometry::{Rectangle, Shape, Surface};
+use caustix::geometry::Rectangle;
 use caustix::sample::coordinates::Coordinates;
 use caustix::scattering::{Frame, Quantity, ScatterTable};
 use caustix::scene::camera::CameraSpec;
@@ -14,6 +14,7 @@ use caustix::surface::{Event, Grey, Incidence, Leg, Material, Reference, Tabulat
 use glam::DVec3;
 
 use crate::one_pixel::{assert_close, narrow, pixel};
+use crate::support::local;
 use crate::support::pictures::panel;
 use crate::support::tables::{incidence, lobe, steps};
 
@@ -95,7 +96,7 @@ fn the_value_is_what_photons_do() {
 fn sheet_before_a_panel(strength: f64, specular_remainder: bool) -> (Scene, f64) {
     let options = Options { specular_remainder, ..Options::default() };
     let sheet = Tabulated::new(&table(strength), &options).unwrap().0;
-    let albedo = sheet.albedo(true, incidence(20.0, 0.0))[0];
+    let albedo = local::albedo(&sheet, true, incidence(20.0, 0.0))[0];
     let shape = Rectangle::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
     let mut scene = SceneBuilder::new();
     scene

@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use caustix::error::Kind;
 use caustix::geometry::Whereabouts;
 use caustix::picture::camera::{Film, Pass, Sums, View, render};
-use caustix::picture::gather::density::Density;
 use caustix::scene::Scene;
 use caustix::scene::camera::{CameraSpec, Filter};
 use caustix::sequence::Points;
@@ -137,7 +136,7 @@ fn inside_glass_luminance_is_greater_by_the_square_of_the_index() {
 
 /// The mean over a picture's pixels, each a net of its own, and its standard error.
 fn mean_emission(scene: &Scene, spec: &CameraSpec) -> Part {
-    let film = pass(&View::new(scene, spec, 5).unwrap(), &Pass::emission());
+    let film = pass(&View::new(scene, &camera(spec.clone()), 5).unwrap(), &Pass::EMISSION);
     let n = film.value.len() as f64;
     let mean = film.value.iter().map(|v| v[0]).sum::<f64>() / n;
     let spread: f64 = film.value.iter().map(|v| (v[0] - mean).powi(2)).sum();
@@ -248,8 +247,8 @@ fn looking_along_a_surface_gives_numbers() {
 fn whole(scene: &Scene, spec: &CameraSpec, m: u32) -> Film<1> {
     let photon_lm = scene.emitters.flux_lm() / (f64::from(REPLICATES) * (1u64 << m) as f64);
     let maps = photons(scene, 0..REPLICATES, m, 7);
-    let densities = maps.each_ref().map(|map| Density::fixed(&scene.geometry, map, photon_lm, 0.2));
-    pass(&View::new(scene, spec, 3).unwrap(), &Pass::whole(&densities, REPLICATES))
+    let densities = maps.each_ref().map(|map| within(&scene.geometry, map, photon_lm, 0.2));
+    pass(&View::new(scene, &camera(spec.clone()), 3).unwrap(), &all(&densities, REPLICATES))
 }
 
 #[test]
@@ -261,11 +260,11 @@ fn no_place_for_a_camera() {
             .to_string(),
     ];
     let scene = scene(&text);
-    let on = View::new(&scene, &narrow([0.2, 0.2, 0.0], [0.0, 0.0, 1.0]), 1).unwrap_err();
+    let on = View::new(&scene, &camera(narrow([0.2, 0.2, 0.0], [0.0, 0.0, 1.0])), 1).unwrap_err();
     assert!(on.kind() == Kind::Geometry && on.to_string().contains("\"plate\""), "{on}");
     let across = CameraSpec { lens_radius_m: 0.1, ..narrow([0.495, 0.0, 2.0], [3.0, 0.0, 2.0]) };
-    assert!(View::new(&scene, &across, 1).unwrap_err().to_string().contains("lens"));
-    assert!(View::new(&scene, &narrow([0.0, 0.0, 2.0], [0.0, 0.0, 0.0]), 1).is_ok(), "inside glass");
+    assert!(View::new(&scene, &camera(across), 1).unwrap_err().to_string().contains("lens"));
+    assert!(View::new(&scene, &camera(narrow([0.0, 0.0, 2.0], [0.0, 0.0, 0.0])), 1).is_ok(), "inside glass");
 }
 
 /// A room with all that an eye path can meet, and a picture of several tiles.
@@ -318,23 +317,23 @@ fn passes_add_up_to_the_picture_of_all_photons() {
     let m = 6;
     let photon_lm = scene.emitters.flux_lm() / (f64::from(REPLICATES) * (1u64 << m) as f64);
     let one = whole(&scene, &spec, m);
-    let view = View::new(&scene, &spec, 3).unwrap();
+    let view = View::new(&scene, &camera(spec.clone()), 3).unwrap();
     let mut sums = Sums::<1>::new(spec.pixels).unwrap();
     let mut add = |pass: &Pass<'_, 1>| {
         assert!(render(&view, pass, &mut sums, &AtomicBool::new(false), &|_| {}).unwrap().unseen == 0);
     };
     // Replicates 0 to 4; half of replicate 5's photons and the other half; the rest.
-    let density = |map| Density::fixed(&scene.geometry, map, photon_lm, 0.2);
+    let density = |map| within(&scene.geometry, map, photon_lm, 0.2);
     let first = photons(&scene, 0..5, m, 7);
-    add(&Pass::whole(&first.each_ref().map(density), 5));
+    add(&all(&first.each_ref().map(density), 5));
     let fifth = photons(&scene, 5..6, m, 7);
     let [caustic, diffuse] = fifth.each_ref().map(density);
-    add(&Pass::photons(&[caustic], 5..6, false));
-    add(&Pass::photons(&[diffuse], 5..6, true));
+    add(&part(&[caustic], 5..6, false));
+    add(&part(&[diffuse], 5..6, true));
     let rest = photons(&scene, 6..REPLICATES, m, 7);
-    add(&Pass::photons(&rest.each_ref().map(density), 6..REPLICATES, true));
+    add(&part(&rest.each_ref().map(density), 6..REPLICATES, true));
     let many = sums.finish();
-    assert_eq!(sums.replicates(), REPLICATES);
+    assert_eq!(sums.replicates, REPLICATES);
     for k in 0..one.value.len() {
         let (a, b) = (one.value[k][0], many.value[k][0]);
         assert!((a - b).abs() <= 1e-12 * a, "{a} {b}");
@@ -348,7 +347,7 @@ fn passes_add_up_to_the_picture_of_all_photons() {
 fn one_replicate_or_one_sample_knows_no_error() {
     let (scene, spec) = mixed();
     let spec = CameraSpec { samples: 1, pixels: [2, 2], ..spec };
-    let film = pass(&View::new(&scene, &spec, 3).unwrap(), &Pass::whole(&[], 0));
+    let film = pass(&View::new(&scene, &camera(spec.clone()), 3).unwrap(), &all(&[], 0));
     assert!(film.value.iter().all(|v| v[0].is_finite()) && film.standard_error.iter().all(|e| e.is_nan()));
 }
 
@@ -356,12 +355,12 @@ fn one_replicate_or_one_sample_knows_no_error() {
 fn an_interrupted_pass_leaves_what_it_saw_and_says_what_it_did_not_see() {
     let (scene, spec) = mixed();
     let spec = CameraSpec { pixels: [40, 24], ..spec };
-    let view = View::new(&scene, &spec, 3).unwrap();
-    let whole = pass(&view, &Pass::whole(&[], 0));
+    let view = View::new(&scene, &camera(spec.clone()), 3).unwrap();
+    let whole = pass(&view, &all(&[], 0));
     let interrupt = AtomicBool::new(false);
     let mut sums = Sums::<1>::new(spec.pixels).unwrap();
     let after_a_tile = |_| interrupt.store(true, Ordering::Relaxed);
-    let done = render(&view, &Pass::whole(&[], 0), &mut sums, &interrupt, &after_a_tile).unwrap();
+    let done = render(&view, &all(&[], 0), &mut sums, &interrupt, &after_a_tile).unwrap();
     let film = sums.finish();
     let unseen: Vec<bool> = film.standard_error.iter().map(|e| e.is_nan()).collect();
     let number = unseen.iter().filter(|u| **u).count();

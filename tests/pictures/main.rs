@@ -17,5 +17,6 @@ mod photon_density_few;
 mod photon_kernels;
 mod photon_map;
 mod photons;
+mod picture_bias;
 mod run;
 mod splat;

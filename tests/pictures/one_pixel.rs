@@ -1,22 +1,27 @@
 //! What the camera's tests share: pictures of one pixel with their parts told apart, photons as a run keeps them, and the
 //! text of small scenes.
 
+use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
+use caustix::geometry::Geometry;
 use caustix::picture::camera::{Film, Pass, Sums, View, render};
-use caustix::picture::gather::density::Density;
+use caustix::picture::gather::Density;
 use caustix::picture::photon_map::{PhotonMap, PhotonStore};
 use caustix::sample::method::Sampling;
 use caustix::scene::Scene;
-use caustix::scene::camera::CameraSpec;
+use caustix::scene::camera::{Bandwidth, CameraSpec, Kernel};
 use caustix::sequence::owen::OwenPoints;
 use caustix::surface::Grey;
 use caustix::tally::Receivers;
 use caustix::transport::parallel::{How, trace_range};
 use glam::DVec3;
 
+use crate::photons::{choice, density_of};
+pub use crate::support::pictures::camera;
+
 /// The photons of some replicates of 2^m photons each, as a run keeps them: (caustic, diffuse).
-pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
+pub fn photons(scene: &Scene, replicates: Range<u32>, m: u32, seed: u64) -> [PhotonMap<1>; 2] {
     let mut store = PhotonStore::<1>::new(scene);
     let nobody = Receivers::new(&scene.geometry, &[]);
     let interrupt = AtomicBool::new(false);
@@ -24,7 +29,7 @@ pub fn photons(scene: &Scene, replicates: std::ops::Range<u32>, m: u32, seed: u6
         let how =
             How { reuse: true, sampling: Sampling::default(), interrupt: &interrupt, progress: &|_| {} };
         let sink = || store.sink(nobody.sink(), replicate);
-        trace_range(scene, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
+        trace_range(scene, &scene.emitters, &OwenPoints::new(seed, replicate), 0..1 << m, Grey, how, sink);
     }
     let frame = store.frame();
     store.take().unwrap().map(|blocks| PhotonMap::build(blocks.concat(), frame, 1.0))
@@ -52,10 +57,30 @@ pub struct Pixel {
 
 /// One pass.
 pub fn pass(view: &View<'_>, pass: &Pass<'_, 1>) -> Film<1> {
-    let mut sums = Sums::new(view.spec().pixels).unwrap();
+    let mut sums = Sums::new(view.camera.pixels).unwrap();
     let done = render(view, pass, &mut sums, &AtomicBool::new(false), &|_| {}).unwrap();
     assert!(done.unseen == 0 && done.killed == 0);
     sums.finish()
+}
+
+/// The pass of all there is: densities of all photons, of this many replicates.
+pub fn all<'d>(densities: &'d [Density<'d, 1>], replicates: u32) -> Pass<'d, 1> {
+    Pass { emission: true, direct: true, ..part(densities, 0..replicates, true) }
+}
+
+/// A pass of further photons of these replicates.
+pub fn part<'d>(densities: &'d [Density<'d, 1>], replicates: Range<u32>, finishes: bool) -> Pass<'d, 1> {
+    Pass { densities, replicates, finishes, emission: false, direct: false }
+}
+
+/// The density of all photons within a radius, m.
+pub fn within<'m>(
+    geometry: &'m Geometry,
+    map: &'m PhotonMap<1>,
+    photon_lm: f64,
+    radius_m: f64,
+) -> Density<'m, 1> {
+    density_of(geometry, map, photon_lm, choice(Bandwidth::Radius(radius_m), Kernel::default(), 1))
 }
 
 /// The first pixel of a picture.
@@ -70,17 +95,17 @@ pub fn pixel(scene: &Scene, spec: &CameraSpec, m: u32, radius_m: f64) -> Pixel {
     // A run leaves out the density of no photons at all: that there are none anywhere is no doubt about one place.
     let densities = |kinds: &[usize]| -> Vec<Density<'_, 1>> {
         let maps = kinds.iter().map(|k| &maps[*k]).filter(|map| !map.photons().is_empty());
-        maps.map(|map| Density::fixed(&scene.geometry, map, photon_lm, radius_m)).collect()
+        maps.map(|map| within(&scene.geometry, map, photon_lm, radius_m)).collect()
     };
-    let view = View::new(scene, spec, 11).unwrap();
+    let view = View::new(scene, &camera(spec.clone()), 11).unwrap();
     let [caustic, diffuse, both] = [densities(&[0]), densities(&[1]), densities(&[0, 1])];
-    let only = |emission: bool, direct: bool| Pass { emission, direct, ..Pass::<1>::emission() };
+    let only = |emission: bool, direct: bool| Pass { emission, direct, ..Pass::<1>::EMISSION };
     let result = Pixel {
         emission: first(&pass(&view, &only(true, false))),
         direct: first(&pass(&view, &only(false, true))),
-        caustic: first(&pass(&view, &Pass::photons(&caustic, 0..REPLICATES, true))),
-        diffuse: first(&pass(&view, &Pass::photons(&diffuse, 0..REPLICATES, true))),
-        all: first(&pass(&view, &Pass::whole(&both, REPLICATES))),
+        caustic: first(&pass(&view, &part(&caustic, 0..REPLICATES, true))),
+        diffuse: first(&pass(&view, &part(&diffuse, 0..REPLICATES, true))),
+        all: first(&pass(&view, &all(&both, REPLICATES))),
     };
     let sum =
         [result.emission, result.direct, result.caustic, result.diffuse].map(|p| p.value).iter().sum::<f64>();

@@ -2,8 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use caustix::picture::gather::Gathered;
 use caustix::picture::gather::bandwidth::choose;
-use caustix::picture::gather::density::{Density, Gathered, PROGRESSIVE_ALPHA};
+use caustix::picture::gather::density::PROGRESSIVE_ALPHA;
 use caustix::picture::gather::footprint::Footprints;
 use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
@@ -12,8 +13,8 @@ use caustix::sequence::owen::OwenPoints;
 use glam::DVec3;
 
 use crate::photons::{
-    KERNELS, choice, density_at, floor, frame_of, geometry, lambertian, mean_and_error, on_floor,
-    on_the_floor, photon, u,
+    KERNELS, choice, density_at, density_of, error_and_bias, floor, frame_of, geometry, lambertian,
+    mean_and_error, on_floor, on_the_floor, photon, u,
 };
 
 #[test]
@@ -23,7 +24,7 @@ fn progressive_radii_shrink_by_replicate() {
     // One photon in each replicate, at the same distance: each adds the height of its own disc, until its radius is smaller.
     let photons = (0..40).map(|i| photon(&frame, DVec3::new(0.56, 0.5, 0.0), 0, i)).collect();
     let map = PhotonMap::build(photons, frame, 0.1);
-    let density = Density::new(&scene, &map, 1.0, choice(Bandwidth::Progressive(0.1), Kernel::Flat, 40));
+    let density = density_of(&scene, &map, 1.0, choice(Bandwidth::Progressive(0.1), Kernel::Flat, 40));
     let (_, sums) = density_at(&density, &on_floor(&scene, 0.5, 0.5), 40);
     let mut square = 0.01;
     for (i, found) in sums.by_replicate.iter().enumerate() {
@@ -107,8 +108,8 @@ fn strip(n: u64, seed: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
     let frame = frame_of(&scene);
     let width = 0.01;
     let map = PhotonMap::build(fold_and_hill(&frame, n, seed), frame, 0.0);
-    let density = Density::new(&scene, &map, 1.0 / n as f64, choice(Bandwidth::Automatic, kernel, 8));
-    let chosen = density.chosen().unwrap();
+    let chosen = choose(&Footprints::new(&scene), &map, kernel, 8, 1.0);
+    let density = density_of(&scene, &map, 1.0 / n as f64, choice(chosen.bandwidth(), kernel, 8));
     println!("2^{} photons, {kernel:?}: {chosen:?}", n.ilog2());
     let pixel = |i: u32, j: u32| {
         let (left, low) = (width * f64::from(i), 0.1 * f64::from(j));
@@ -119,7 +120,8 @@ fn strip(n: u64, seed: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
             let at = on_floor(&scene, left + width * dx, low + width * u(u64::from(k), 3));
             density.gather(&at, [PI / 16.0], lambertian(true), &mut sums);
         }
-        [truth, sums.value[0], sums.standard_error().unwrap(), sums.bias()]
+        let (error, bias) = error_and_bias(&sums);
+        [truth, sums.value[0], error, bias]
     };
     ((0..1000).map(|p| pixel(p / 10, p % 10)).collect(), chosen.radius_m)
 }
@@ -179,7 +181,7 @@ fn of_k_nearest_quasi_random_points_the_density_is_off_by_less_than_half_in_k() 
                     }
                 }
                 let map = PhotonMap::build(photons, frame, 0.02);
-                let density = Density::new(&scene, &map, 1.0, choice(Bandwidth::Nearest(k), Kernel::Flat, 8));
+                let density = density_of(&scene, &map, 1.0, choice(Bandwidth::Nearest(k), Kernel::Flat, 8));
                 let mean = (0..400u64)
                     .map(|i| {
                         let at = on_floor(&scene, 0.1 + 0.8 * u(i, 60 + seed), 0.1 + 0.8 * u(i, 90 + seed));

@@ -4,14 +4,15 @@ use std::f64::consts::PI;
 
 use caustix::geometry::{Geometry, Hit, Rectangle, Shape, Surface, Whereabouts};
 use caustix::picture::gather::bandwidth::choose;
-use caustix::picture::gather::density::{Choice, Density, Gathered, PROGRESSIVE_ALPHA};
+use caustix::picture::gather::density::PROGRESSIVE_ALPHA;
 use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::gather::{Choice, Density, Gathered};
 use caustix::picture::photon_map::record::{FRONT, pack};
 use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
 use glam::DVec3;
 
-use crate::photons::{frame_of, u};
+use crate::photons::{density_of, error_and_bias, frame_of, u};
 
 /// The unit square at z = 0, its front up, and as many more above it.
 fn sheets(count: u32) -> Geometry {
@@ -76,13 +77,13 @@ fn a_sheet_that_is_lit_from_behind_alone_is_dark_and_not_certain() {
     let here = middle(&scene, true);
     for bandwidth in BANDWIDTHS {
         let map = PhotonMap::build(photons(&frame, 5000, 1, 0, false), frame, 0.1);
-        let density = Density::new(&scene, &map, 1.0, choice(bandwidth));
+        let density = density_of(&scene, &map, 1.0, choice(bandwidth));
         let opaque = |_, front: bool| [if front { 1.0 } else { 0.0 }];
         let mut asked = Gathered::new(8);
         density.gather(&here, [1.0], opaque, &mut asked);
         for (how, sums) in [("evenly", evenly(&density, &here)), ("by its BSDF", asked)] {
             assert_eq!(sums.value, [0.0], "{bandwidth:?} {how}");
-            assert!(sums.standard_error().unwrap() > 0.0, "{bandwidth:?} {how}: 0 and certain");
+            assert!(error_and_bias(&sums).0 > 0.0, "{bandwidth:?} {how}: 0 and certain");
         }
         if let Bandwidth::Radius(r) = bandwidth {
             let one = 1.0 / (PI * r * r);
@@ -106,7 +107,7 @@ fn photons_of_the_other_side_change_nothing_of_what_is_gathered_evenly() {
             if bandwidth == Bandwidth::Automatic {
                 continue;
             }
-            let of = |map| evenly(&Density::new(&scene, map, 1.0, choice(bandwidth)), &middle(&scene, true));
+            let of = |map| evenly(&density_of(&scene, map, 1.0, choice(bandwidth)), &middle(&scene, true));
             let (alone, both) = (of(&alone), of(&both));
             let numbers = |g: &Gathered<1>| [g.value[0], g.second[0], g.sparse, g.nearest_bias];
             for (a, b) in numbers(&alone).into_iter().zip(numbers(&both)) {
@@ -124,18 +125,21 @@ fn a_sheet_that_transmits_shows_the_photons_of_both_sides_and_their_error() {
     let sides = [photons(&frame, 20_000, 7, 0, true), photons(&frame, 20_000, 9, 0, false)];
     let map = PhotonMap::build(sides.concat(), frame, 0.1);
     for bandwidth in BANDWIDTHS {
-        let density = Density::new(&scene, &map, 1.0, choice(bandwidth));
+        let density = density_of(&scene, &map, 1.0, choice(bandwidth));
         let mut sums = Gathered::new(8);
         density.gather(&here, [1.0], |_, front| [if front { 0.5 } else { 0.25 }], &mut sums);
-        let error = sums.standard_error().unwrap();
-        assert!((sums.value[0] - 15_000.0).abs() < 5.0 * error + sums.bias(), "{bandwidth:?}: {sums:?}");
+        let error = error_and_bias(&sums).0;
+        assert!(
+            (sums.value[0] - 15_000.0).abs() < 5.0 * error + error_and_bias(&sums).1,
+            "{bandwidth:?}: {sums:?}"
+        );
         assert!(error < 3000.0, "{bandwidth:?}: {error}");
     }
     // A sheet that does nothing but transmit, and five photons behind it: those before it bring nothing.
     let few = photons(&frame, 1 << 20, 11, 0, false).into_iter();
     let few = few.filter(|p| (frame.position(p.cell) - here.position).length() < 0.1).take(5).collect();
     let map = PhotonMap::build([sides[0].clone(), few].concat(), frame, 0.1);
-    let density = Density::fixed(&scene, &map, 1.0, 0.1);
+    let density = density_of(&scene, &map, 1.0, choice(Bandwidth::Radius(0.1)));
     let mut sums = Gathered::new(8);
     density.gather(&here, [1.0], |_, front| [if front { 0.0 } else { 0.25 }], &mut sums);
     let expected = 0.25 * 6f64.sqrt() / (PI * 0.01);
@@ -151,7 +155,7 @@ fn the_k_nearest_of_a_surface_do_not_depend_on_others() {
     let alone = PhotonMap::build(own.clone(), frame, 0.1);
     let among = PhotonMap::build([own, others].concat(), frame, 0.01);
     for bandwidth in [Bandwidth::Nearest(30), Bandwidth::AtLeast { radius_m: 0.02, neighbours: 30 }] {
-        let of = |map| evenly(&Density::new(&scene, map, 1.0, choice(bandwidth)), &middle(&scene, true));
+        let of = |map| evenly(&density_of(&scene, map, 1.0, choice(bandwidth)), &middle(&scene, true));
         let (alone, among) = (of(&alone), of(&among));
         assert!((alone.value[0] / among.value[0] - 1.0).abs() < 1e-12, "{bandwidth:?}");
         assert!((alone.second[0] / among.second[0] - 1.0).abs() < 1e-12, "{bandwidth:?}");
@@ -179,7 +183,7 @@ fn a_photon_that_no_replicate_found_is_worth_that_of_the_narrowest_radius() {
     let scene = sheets(1);
     let frame = frame_of(&scene);
     let map = PhotonMap::build(Vec::new(), frame, 0.1);
-    let density = Density::new(&scene, &map, 3.0, choice(Bandwidth::Progressive(0.1)));
+    let density = density_of(&scene, &map, 3.0, choice(Bandwidth::Progressive(0.1)));
     // r_(i+1)^2 = r_i^2 (i + 2/3) / (i + 1), eight of them.
     let narrowest2 =
         (1..8).fold(0.01, |r2, i| r2 * (f64::from(i) + PROGRESSIVE_ALPHA) / (f64::from(i) + 1.0));

@@ -1,11 +1,13 @@
 //! Photons on shapes, and densities of them at a hit.
 
 use std::f64::consts::{FRAC_1_PI, PI};
+use std::sync::Arc;
 
 use caustix::geometry::{Geometry, Hit, Rectangle, Shape, Surface, Whereabouts};
-use caustix::picture::gather::density::{Choice, Density, Gathered};
+use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::gather::{Choice, Density, ErrorSums, Gathered};
 use caustix::picture::photon_map::record::{FRONT, pack};
-use caustix::picture::photon_map::{Frame, Photon};
+use caustix::picture::photon_map::{Frame, Photon, PhotonMap};
 use caustix::scene::camera::{Bandwidth, Kernel};
 use caustix::sequence::hash::mix64;
 use glam::DVec3;
@@ -58,6 +60,24 @@ pub fn density_at(density: &Density<'_, 1>, at: &Hit, replicates: usize) -> (f64
     let mut sums = Gathered::new(replicates);
     density.gather(at, [PI], lambertian(at.front), &mut sums);
     (sums.value[0], sums)
+}
+
+/// Standard error and bias as a pixel of one sample has them.
+pub fn error_and_bias(sums: &Gathered<1>) -> (f64, f64) {
+    let replicates = sums.by_replicate.len() as u32;
+    let mut error = ErrorSums::NOTHING;
+    error.add(sums, 1.0, 0..replicates, true);
+    (error.variance(replicates).sqrt(), error.bias())
+}
+
+/// A density on these surfaces.
+pub fn density_of<'m>(
+    geometry: &'m Geometry,
+    map: &'m PhotonMap<1>,
+    photon_lm: f64,
+    choice: Choice,
+) -> Density<'m, 1> {
+    Density::new(Arc::new(Footprints::new(geometry)), map, photon_lm, choice)
 }
 
 pub fn choice(bandwidth: Bandwidth, kernel: Kernel, replicates: u32) -> Choice {

@@ -6,7 +6,7 @@ use caustix::error::Kind;
 use caustix::files::photon_map;
 use caustix::picture::camera::Film;
 use caustix::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
-use caustix::run::{Outcome, Plan, StoppedBy, trace};
+use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use caustix::scene::Identity;
 use caustix::scene::camera::{Bandwidth, Camera, CameraSpec};
 use caustix::scene::receiver::ReceiverSpec;
@@ -69,8 +69,8 @@ fn receivers_and_ledger_are_those_of_a_run_without_a_camera() {
         let without = trace(&bare, &plan, &AtomicBool::new(false), &|_| {}).unwrap();
         let (with, picture) = pictured(&ball_on_table(grey(0.4), memory, true), &plan, false);
         assert_eq!((with.photons, &with.ledger), (without.photons, &without.ledger));
-        assert_eq!(with.cells, without.cells);
-        assert_eq!(with.accounts, without.accounts);
+        assert_eq!(with.cells(), without.cells());
+        assert_eq!(with.accounts(), without.accounts());
         assert_eq!(with.census.dimension_histogram, without.census.dimension_histogram);
         assert_eq!((picture.summary.photons, picture.summary.replicates), (plan.photons(), replicates));
         assert!((picture.summary.passes > 1) == (memory < ROOM), "{:?}", picture.summary);
@@ -189,6 +189,13 @@ fn an_interrupted_run_leaves_the_picture_of_what_was_traced() {
     assert!((sum / expected - 1.0).abs() < 0.02, "{sum} {expected}");
 }
 
+/// Another camera.
+fn change(scene: &mut Scene, how: impl FnOnce(&mut CameraSpec)) {
+    let mut spec = CameraSpec::clone(scene.camera.as_ref().unwrap());
+    how(&mut spec);
+    scene.camera = Some(Camera::new(spec).unwrap());
+}
+
 /// A run whose camera is interrupted in its `pass`th pass, on one thread.
 fn interrupted_in_pass(pass: u32, memory: u64, plan: &Plan) -> (Outcome, Picture<1>) {
     let interrupt = AtomicBool::new(false);
@@ -204,8 +211,7 @@ fn interrupted_in_pass(pass: u32, memory: u64, plan: &Plan) -> (Outcome, Picture
     };
     let watch = Watch { interrupt: &interrupt, photons: &|_| {}, camera: &camera };
     let mut scene = ball_on_table(grey(0.4), memory, true);
-    let spec = scene.camera.as_mut().unwrap();
-    spec.pixels = [36, 20];
+    change(&mut scene, |spec| spec.pixels = [36, 20]);
     let (outcome, picture) = on_threads(1, || trace_picture(&scene, plan, false, watch)).unwrap();
     let AnyPicture::Grey(picture) = picture else { panic!("a grey scene") };
     (outcome, picture)
@@ -218,7 +224,7 @@ fn an_interrupt_while_the_camera_looks_costs_neither_receivers_nor_the_pixels_se
     let without = trace(&bare, &four, &AtomicBool::new(false), &|_| {}).unwrap();
     // In the only pass: all is traced, a tile is seen.
     let (outcome, picture) = interrupted_in_pass(1, ROOM, &four);
-    assert_eq!((outcome.stopped_by, &outcome.cells), (StoppedBy::Photons, &without.cells));
+    assert_eq!((outcome.stopped_by, outcome.cells()), (StoppedBy::Photons, without.cells()));
     assert_eq!(picture.summary.pixels_unseen, 36 * 20 - 256);
     assert_eq!(picture.film.standard_error.iter().filter(|e| e.is_finite()).count(), 256);
     // In one before the last: tracing ends, and what there is by then is seen wholly.
@@ -226,7 +232,7 @@ fn an_interrupt_while_the_camera_looks_costs_neither_receivers_nor_the_pixels_se
     assert_eq!((outcome.stopped_by, picture.summary.pixels_unseen), (StoppedBy::Interrupt, 0));
     assert!(outcome.replicates < 4 && picture.summary.passes >= 2, "{:?}", picture.summary);
     let mut scene = ball_on_table(grey(0.4), ROOM, true);
-    scene.camera.as_mut().unwrap().pixels = [36, 20];
+    change(&mut scene, |spec| spec.pixels = [36, 20]);
     let (sum, expected) = (total(&picture.film), total(&pictured(&scene, &four, false).1.film));
     assert!((sum / expected - 1.0).abs() < 0.02, "{sum} {expected}");
 }
@@ -255,7 +261,7 @@ fn a_bandwidth_chosen_in_the_first_of_many_passes_is_near_that_of_one() {
     let plan = plan(1 << 18, 8);
     let chosen = |memory| {
         let mut scene = ball_on_table(grey(0.4), memory, true);
-        scene.camera.as_mut().unwrap().bandwidth = Bandwidth::Automatic;
+        change(&mut scene, |spec| spec.bandwidth = Bandwidth::Automatic);
         let (_, picture) = pictured(&scene, &plan, false);
         (picture.summary.bandwidth.unwrap().map(|b| b.radius_m.unwrap()), picture.summary)
     };
@@ -292,7 +298,8 @@ fn a_saved_map_is_of_its_scene_and_settings_and_undamaged() {
         assert!(photon_map::read::<1>(&damaged, &hash).is_err(), "byte {at}");
     }
     assert!(photon_map::read::<1>(&bytes[..bytes.len() - 50], &hash).is_err());
-    let other = Plan { seed: 8, ..plan };
+    let settings = Settings { photons: Some(1 << 13), replicates: Some(2), seed: 8, ..Settings::default() };
+    let other = Plan::new(&settings).unwrap();
     let refused = photon_map::read::<1>(&bytes, &hash_of_photons(&scene, &other));
     assert_eq!(refused.unwrap_err().kind(), Kind::Range);
 }

@@ -17,7 +17,7 @@ use caustix::tally::Receivers;
 use glam::{DVec2, DVec3};
 
 use crate::support::judge::{SIGNIFICANCE, judge};
-use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, scene, unwatched};
+use crate::support::pictures::{beam, camera, grey, on_threads, panel, plan, rectangle, scene, unwatched};
 
 /// Splats alone, without what eye paths add: value by channel [cd/m2] and standard error of the luminance.
 struct Splatted<const C: usize> {
@@ -31,25 +31,23 @@ fn splatted<const C: usize, T: Channels<C>>(
     plan: &Plan,
     carried: T,
 ) -> Splatted<C> {
-    let mut splat = Splat::<C>::new(scene, spec).unwrap();
+    let mut splat = Splat::<C>::new(scene, &camera(spec.clone())).unwrap();
     let mut moments = SplatMoments::<C>::new((spec.pixels[0] * spec.pixels[1]) as usize);
     let receivers = Receivers::new(&scene.geometry, &scene.receivers);
-    for replicate in 0..plan.replicates {
-        let n = plan.photons_per_replicate;
-        let mut tracer = Tracer::new(scene, plan.algorithm, plan.seed, replicate, n);
+    for replicate in 0..plan.replicates() {
+        let n = plan.photons_per_replicate();
+        let mut tracer = Tracer::new(scene, plan.algorithm(), plan.seed(), replicate, n);
         let sink = || splat.sink(receivers.sink());
         tracer.trace_into(n, carried, sink, &AtomicBool::new(false), &|_| {}).unwrap();
         splat.close(&mut moments, true);
     }
     assert_eq!(splat.cut(), 0);
     let photon_lm = scene.emitters.flux_lm() / plan.photons() as f64;
-    let r = f64::from(plan.replicates);
-    let luminance = |v: &[f64; C]| if C == 3 { 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2] } else { v[0] };
-    let error = moments.sum.iter().zip(&moments.square).map(|(sum, square)| {
-        let y = luminance(sum);
-        (r / (r - 1.0) * (square - y * y / r)).sqrt() * photon_lm
-    });
-    Splatted { error: error.collect(), value: moments.sum.iter().map(|v| v.map(|v| v * photon_lm)).collect() }
+    let error = |pixel| moments.variance(pixel, plan.replicates()).sqrt() * photon_lm;
+    Splatted {
+        error: (0..moments.sum.len()).map(error).collect(),
+        value: moments.sum.iter().map(|v| v.map(|v| v * photon_lm)).collect(),
+    }
 }
 
 /// Fails unless the pixels agree with these luminances in their own standard errors, which must be small.

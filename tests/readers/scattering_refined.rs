@@ -9,6 +9,7 @@ use caustix::surface::tabulated::{Options, Tabulated};
 use glam::DVec3;
 
 use crate::make_brdf;
+use crate::support::local;
 use crate::support::quadrature::Gauss;
 
 /// Steps of the coarsest table: theta_i, polar and azimuth, degrees.
@@ -80,7 +81,7 @@ fn rms_of_g(t: &Tabulated, wanted: impl Fn(DVec3, DVec3) -> bool) -> f64 {
     let (mut error, mut norm) = (0.0, 0.0);
     for (wi, wo) in (0..200_000).map(pair).filter(|(wi, wo)| wanted(*wi, *wo)) {
         let exact = g_of_formula(f, wi, wo);
-        let own = t.eval_cos(true, wi, wo, Quantity::Reflection)[0];
+        let own = local::projected(t, true, wi, Quantity::Reflection, wo)[0];
         error += (own - exact) * (own - exact);
         norm += exact * exact;
     }
@@ -104,7 +105,7 @@ fn albedo_of_formula(theta_i: f64) -> f64 {
 fn albedo_error(t: &Tabulated, exact: &[(f64, f64)]) -> f64 {
     let off = exact.iter().map(|(theta_i, albedo)| {
         let wi = DVec3::from(make_brdf::incident(*theta_i, 0.0));
-        (t.albedo(true, wi)[0] - albedo).abs()
+        (local::albedo(t, true, wi)[0] - albedo).abs()
     });
     off.fold(0.0, f64::max)
 }

@@ -258,6 +258,24 @@ fn materials() {
         "a lambertian material without `reflectance`",
         &format!("reflectance = {reflectance}"),
     );
+    for bad in ["1.01", "-0.1", "nan"] {
+        expect(
+            &material(&format!(
+                "[material.black]\ntype = \"lambertian\"\nreflectance = 0.1\ntransmittance = «{bad}"
+            )),
+            Kind::Range,
+            &format!("transmittance = {bad}"),
+            "a transmittance from 0 to 1",
+        );
+    }
+    expect(
+        &material(
+            "[material.black]\ntype = \"lambertian\"\nreflectance = [0.2, 0.6, 0.2]\ntransmittance = «0.5",
+        ),
+        Kind::Range,
+        "transmittance = 0.5",
+        "a transmittance of at most 1 - reflectance in every channel",
+    );
     let error = expect(
         &material("[material.black]\ntype = \"mirror\"\n«reflectence = 0.5"),
         Kind::Unknown,

@@ -62,10 +62,8 @@ impl Sink for Watch<'_> {
             Material::Mirror(_) => &mut seen.mirror,
             Material::Lambertian(wall) if wall.reflectance().luminous() == 1.0 => &mut seen.white,
             Material::Lambertian(_) => &mut seen.lambertian,
-            Material::Tabulated(_) => {
-                unreachable!("no table in these scenes")
-            }
             Material::Absorber => &mut seen.absorber,
+            other => unreachable!("no {other:?} in these scenes"),
         };
         *count += 1;
     }
@@ -216,7 +214,7 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
             interrupt: &AtomicBool::new(false),
             progress: &|_| {},
         };
-        let census = trace_range(scene, &owen, 0..photons, Grey, how, || Ignore).census;
+        let census = trace_range(scene, &scene.emitters, &owen, 0..photons, Grey, how, || Ignore).census;
         assert_eq!(census.drawn_for.iter().sum::<u64>(), totals.drawn, "{name}");
         assert_eq!(census.dimension_histogram, histogram, "{name}");
         assert_eq!(census.dimension_max, totals.longest, "{name}");

@@ -1,9 +1,10 @@
 //! Every photometric file: sampled directions have the density of the file's own candela.
 //!
-//! Directions come out of the emitter as photons get them. What they should be comes from the file alone: angles by their
-//! definitions, cell masses and distribution functions by quadrature of `Web::intensity_cd` under the solid angle of the
-//! file's type. Per file: chi-square on the table's cells and on cells shifted by half a cell, Kolmogorov-Smirnov on the
-//! polar angle and on the azimuth given the polar angle; the level of each is Sidak's for all files together.
+//! Directions come out of the emitter as photons get them. What they should be comes from the file alone:
+//! angles by their definitions, cell masses and distribution functions by quadrature of `Web::intensity_cd`
+//! under the solid angle of the file's type. Per file: chi-square on the table's cells and on cells shifted
+//! by half a cell, Kolmogorov-Smirnov on the polar angle and on the azimuth given the polar angle; the level
+//! of each is Sidak's for all files together.
 
 use caustix::emitter::{AimFrame, Emits, Emitter, Emitters, Photometric};
 use caustix::files::lm63;
@@ -19,6 +20,8 @@ use std::path::{Path, PathBuf};
 use crate::support::angles::Luminaire;
 use crate::support::data;
 use crate::support::density::{Density, Measure, ends};
+use crate::support::given::of_grid;
+use crate::support::sphere_table::SphereTable;
 use crate::support::statistics::{chi_square, kolmogorov_smirnov, sidak};
 
 const SAMPLES: u64 = 200_000;
@@ -83,7 +86,8 @@ fn histogram(samples: &[(f64, f64)], p_edges: &[f64], q_edges: &[f64]) -> (Vec<u
     (counts, outside)
 }
 
-/// Edges halfway between the angles of the file, where there are only few an even division into `least` beside.
+/// Edges halfway between the angles of the file, where there are only few an even division into `least`
+/// beside.
 fn shifted(breaks: &[f64], least: usize) -> Vec<f64> {
     let [first, last] = ends(breaks);
     let mut edges = vec![first];
@@ -142,22 +146,26 @@ fn check_flux(path: &Path) {
     assert!((got / expected - 1.0).abs() < 1e-11, "{}: {got} lm, quadrature {expected} lm", path.display());
 }
 
-/// `invert(sample(u)) = u` at points that have nothing to do with the grid.
+/// A photon's coordinates come back from its direction by quadrature, at points that have nothing to do with
+/// the grid.
 fn check_invert(path: &Path) {
     let photometry = lm63::read(path).unwrap();
+    let full = photometry.web.full_grid();
+    let table = SphereTable::new(full.polar_rad, full.azimuth_rad, full.intensity_cd);
     let grid = emitter(&photometry).table().unwrap().clone();
     let points = IndependentPoints::new(99, 0);
     let (mut worst, mut checked) = ([0.0f64; 2], 0);
     for i in 0..20_000 {
-        let (u1, u2) = (points.coordinate(i, 0), to_unit_f64(points.coordinate(i, 1)));
-        let at = grid.sample(u1, u2, Solver::DEFAULT);
-        let (v1, v2) = grid.invert(at.theta, at.phi).unwrap();
-        worst[0] = worst[0].max(v1.abs_diff(u1) as f64 / 2f64.powi(64));
-        worst[1] = worst[1].max((v2 - u2).abs());
+        let (u1, u2) = (points.coordinate(i, 0), points.coordinate(i, 1));
+        let at = of_grid(&grid, u1, u2, Solver::DEFAULT);
+        let [v1, v2] = table.by_cell(at.theta, at.phi);
+        worst[0] = worst[0].max((v1 - to_unit_f64(u1)).abs());
+        worst[1] = worst[1].max((v2 - to_unit_f64(u2)).abs());
         checked += 1;
     }
     println!("{}: {checked} points, worst |du1| {:.1e}, |du2| {:.1e}", path.display(), worst[0], worst[1]);
-    assert!(worst[0] < 2e-14 && worst[1] < 1e-12, "{}: {worst:?}", path.display());
+    // The sum of the cells' fluxes, which shares out u1, is rounded once a cell.
+    assert!(worst[0] < 1e-13 && worst[1] < 1e-12, "{}: {worst:?}", path.display());
 }
 
 #[test]
@@ -239,7 +247,8 @@ fn wrong_densities_are_refused() {
         }
     });
     assert!(p.into_iter().all(|p| p < level), "transposed: {p:?}");
-    // One plane of 37 dimmed by 30 %: 8 % of the flux by 15 % in the mean, a noncentrality of some 500 on 1300 degrees.
+    // One plane of 37 dimmed by 30 %: 8 % of the flux by 15 % in the mean, a noncentrality of some 500 on
+    // 1300 degrees.
     let p = wrong(&|web| {
         let middle = web.horizontal_deg.len() / 2;
         web.candela[middle * n_v..(middle + 1) * n_v].iter_mut().for_each(|c| *c *= 0.7);
@@ -247,8 +256,8 @@ fn wrong_densities_are_refused() {
     assert!(p[0] < level, "dimmed plane: {p:?}");
 }
 
-/// The same for type C: the corners of each cell exchanged along the azimuth, which leaves every node's ring as it is but
-/// for a turn by one plane.
+/// The same for type C: the corners of each cell exchanged along the azimuth, which leaves every node's ring
+/// as it is but for a turn by one plane.
 #[test]
 fn a_turn_by_one_plane_is_refused() {
     let photometry = lm63::read(data::own_file("wavy_glass.ies")).unwrap();

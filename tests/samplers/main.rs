@@ -15,4 +15,5 @@ mod table_checks;
 mod tabulated;
 mod tabulated_files;
 mod tabulated_grid;
+mod tabulated_options;
 mod tabulated_rows;

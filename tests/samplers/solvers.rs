@@ -1,5 +1,5 @@
-//! Every solver of the cell equation over every family of METHOD 3 and 8, the residual by quadrature; and tables at their
-//! extremes, sampled and inverted.
+//! Every solver of the cell equation over every family of METHOD 3 and 8, the residual by quadrature; and
+//! tables at their extremes, sampled and inverted.
 
 use std::f64::consts::PI;
 
@@ -11,6 +11,8 @@ use caustix::sequence::to_unit_f64;
 
 use crate::support::cells::{Case, Method, SOLVED, Score, families, of_table, uniforms};
 use crate::support::data;
+use crate::support::given::of_grid;
+use crate::support::sphere_table::SphereTable;
 
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
@@ -32,7 +34,8 @@ fn no_solver_fails_in_any_family() {
             all.most_evaluations
         );
         assert!(all.worst <= SOLVED);
-        // Twelve steps of the method and a bisection of 53 bits; Ridder's method halves with every second evaluation.
+        // Twelve steps of the method and a bisection of 53 bits; Ridder's method halves with every second
+        // evaluation.
         assert!(all.most_evaluations <= 12 + 53, "{} used {}", solver.name(), all.most_evaluations);
     }
 }
@@ -94,63 +97,66 @@ fn what_is_not_a_number_stays_in_the_cell() {
     }
 }
 
-/// A table of `rows` x `columns` cells over the sphere.
-fn table(rows: usize, columns: usize, f: impl Fn(usize, usize) -> f64) -> Grid {
-    let polar: Vec<f64> = (0..=rows).map(|i| PI * i as f64 / rows as f64).collect();
-    let azimuth: Vec<f64> = (0..=columns).map(|j| 2.0 * PI * j as f64 / columns as f64).collect();
-    let nodes = (0..=rows).flat_map(|i| (0..=columns).map(move |j| (i, j)));
-    let values: Vec<f64> = nodes.map(|(i, j)| f(i, j)).collect();
-    Grid::new(&polar, &azimuth, &values).unwrap()
+fn grid(table: &SphereTable) -> Grid {
+    Grid::new(&table.polar, &table.azimuth, &table.values).unwrap()
 }
 
-/// Samples every solver at spread and at extreme coordinates and inverts: u1 comes back to a part of 1e-9 of itself,
-/// allowing for what the solver's tolerance and the rounding of an angle are worth in u1.
-fn check(name: &str, grid: &Grid) {
+/// Samples every solver at spread and at extreme coordinates and inverts by quadrature: u1 comes back to a
+/// part of 1e-9 of itself, allowing for what the solver's tolerance and the rounding of an angle are worth in
+/// u1.
+fn check(name: &str, table: &SphereTable) {
+    let grid = grid(table);
+    assert!((grid.integral() / table.total() - 1.0).abs() < 1e-12, "{name}");
     let coordinates = (0..4000).map(|i| mix64(2 * i)).chain([0, 1, 1 << 20, 1 << 63, u64::MAX - 1, u64::MAX]);
     for (i, u1) in coordinates.enumerate() {
-        let u2 = to_unit_f64(mix64(2 * i as u64 + 1));
+        let u2 = mix64(2 * i as u64 + 1);
         for solver in Solver::ALL {
             let context = || format!("{name}, {}, u1 {u1}", solver.name());
-            let point = grid.sample(u1, u2, solver);
+            let point = of_grid(&grid, u1, u2, solver);
             assert!((point.direction.length() - 1.0).abs() < 1e-14, "{}", context());
-            assert!(point.evaluations <= 65, "{}: {}", context(), point.evaluations);
-            let Some((v1, v2)) = grid.invert(point.theta, point.phi) else {
-                panic!("{}: outside of the table, {point:?}", context());
-            };
-            let density = grid.pdf_omega(point.theta, point.phi) * point.theta.sin();
-            // One unit of theta (2^-51) and of phi (2^-50) moves u1 by the density times the width of the turn.
-            let rounding = 2f64.powi(-51) * density * 2.0 * PI + 2f64.powi(-45);
-            let off = (v1 as f64 - u1 as f64).abs() / TWO_TO_64;
+            let [v1, v2] = table.by_cell(point.theta, point.phi);
+            let density = table.density(point.theta, point.phi);
+            assert!(
+                (grid.value(point.theta, point.phi) / grid.integral() - density).abs() <= 1e-11 * density
+            );
+            // One unit of theta (2^-51) and of phi (2^-50) moves u1 by the density times the width of the
+            // turn.
+            let rounding = 2f64.powi(-51) * density * point.theta.sin() * 2.0 * PI + 2f64.powi(-45);
+            let off = (v1 - u1 as f64 / TWO_TO_64).abs();
             assert!(off <= 1e-9 * (u1 as f64 / TWO_TO_64) + rounding, "{}: {off:e} {rounding:e}", context());
-            assert!((v2 - u2).abs() <= 1e-9, "{}: {v2} for {u2}", context());
+            assert!((v2 - to_unit_f64(u2)).abs() <= 1e-9, "{}: {v2} for {u2}", context());
         }
     }
 }
 
 #[test]
 fn tables_at_their_extremes_invert_for_every_solver() {
-    check("one cell, the sphere", &table(1, 1, |i, j| (1 + i + 2 * j) as f64));
-    let narrow = Grid::new(&[1.0, 1.0 + 1e-6], &[0.0, 1.0], &[1.0, 2.0, 3.0, 0.0]).unwrap();
-    assert!(narrow.choice().is_single());
-    check("the largest", &table(720, 360, |i, j| f64::from((i * 31 + (j % 360) * 17) as u32 % 997) + 1.0));
-    check("twelve decades", &table(36, 24, |i, j| 10f64.powi(((i * 5 + (j % 24) * 7) % 13) as i32 - 12)));
+    let whole =
+        |rows, columns, f: fn(usize, usize) -> f64| SphereTable::over_the_sphere([rows, columns], 0.0, f);
+    check("one cell, the sphere", &whole(1, 1, |i, j| (1 + i + 2 * j) as f64));
+    let narrow = SphereTable::new(vec![1.0, 1.0 + 1e-6], vec![0.0, 1.0], vec![1.0, 2.0, 3.0, 0.0]);
+    assert!(grid(&narrow).choice().is_single());
+    check("the largest", &whole(720, 360, |i, j| f64::from((i * 31 + (j % 360) * 17) as u32 % 997) + 1.0));
+    check("twelve decades", &whole(36, 24, |i, j| 10f64.powi(((i * 5 + (j % 24) * 7) % 13) as i32 - 12)));
 }
 
-/// All but one cell zero: the four cells around one node are as few as a bilinear table over the sphere can have, and a
-/// corner of the table belongs to a single one.
+/// All but one cell zero: the four cells around one node are as few as a bilinear table over the sphere can
+/// have, and a corner of the table belongs to a single one.
 #[test]
 fn one_cell_among_zeros_is_found_by_every_solver() {
-    let pole = table(18, 12, |i, j| if (i, j) == (0, 0) { 1.0 } else { 0.0 });
-    let inner = table(18, 12, |i, j| if (i, j) == (9, 0) { 1.0 } else { 0.0 });
+    let lit = |at: (usize, usize)| {
+        SphereTable::over_the_sphere([18, 12], 0.0, |i, j| if (i, j) == at { 1.0 } else { 0.0 })
+    };
+    let (pole, inner) = (lit((0, 0)), grid(&lit((9, 0))));
     for solver in Solver::ALL {
         for i in 0..2000u64 {
-            let (u1, u2) = (mix64(i), to_unit_f64(mix64(!i)));
-            let at_pole = pole.sample(u1, u2, solver);
+            let (u1, u2) = (mix64(i), mix64(!i));
+            let at_pole = of_grid(&grid(&pole), u1, u2, solver);
             assert!(at_pole.theta <= PI / 18.0 && at_pole.phi <= PI / 6.0, "{at_pole:?}");
             // A cell whose two ends have no density: the near one for the sine, the far one for the table.
-            let (v1, _) = pole.invert(at_pole.theta, at_pole.phi).unwrap();
-            assert!(v1.abs_diff(u1) as f64 / TWO_TO_64 < 1e-13, "{}: {v1} {u1}", solver.name());
-            let around = inner.sample(u1, u2, solver);
+            let [v1, _] = pole.by_cell(at_pole.theta, at_pole.phi);
+            assert!((v1 - to_unit_f64(u1)).abs() < 1e-13, "{}: {v1} {u1}", solver.name());
+            let around = of_grid(&inner, u1, u2, solver);
             // The edges as the table has them; a sum of edge and in-cell angle is rounded once.
             let edges = PI * 8.0 / 18.0..=PI * 10.0 / 18.0 * (1.0 + f64::EPSILON);
             assert!(edges.contains(&around.theta) && around.phi <= PI / 6.0, "{around:?}");

@@ -1,24 +1,24 @@
-//! Scattering tables made from formulas: value, albedo, density, sample and its inverse against each other and against
-//! quadrature, for incident directions on and off the table's angles.
+//! Scattering tables made from formulas: value, albedo, density, sample and its inverse against each other
+//! and against quadrature, for incident directions on and off the table's angles.
 //!
 //! The frames are written down here once more, from the words of the table's documentation.
 
-use caustix::math::solve::Solver;
 use caustix::sample::coordinates::Coordinates;
 use caustix::sample::method::{Rejection, Sampling};
-use caustix::scattering::Quantity::{Reflection, Transmission};
+use caustix::scattering::Quantity::Reflection;
 use caustix::sequence::hash::mix64;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::to_unit_f64;
 use caustix::surface::tabulated::Options;
-use caustix::surface::{Event, Fixed, Grey, Incidence, Material, Rgb, Tabulated, Throughput};
+use caustix::surface::{Event, Fixed, Rgb, Tabulated, Throughput};
 use glam::DVec3;
 
+use crate::support::local::{self, luminance, projected};
 use crate::support::statistics::{chi_square, sidak, z_test};
 use crate::support::tables::{Case, angles, cases, direction, incidence, incidences};
 use crate::table_checks::{
-    Surface, above, below_horizon, cell, integrals_agree, inverse_returns, jacobians_add_up, luminance,
-    masses, samples_against_density,
+    Surface, below_horizon, coordinates_come_back, integrals_agree, jacobians_add_up, masses,
+    photons_against_quadrature,
 };
 
 /// Chance of a false alarm in a whole test.
@@ -64,7 +64,7 @@ fn values_at_the_nodes_are_those_of_the_table() {
                             let (theta, phi) = (polar.to_radians() * (1.0 + inwards), azimuth.to_radians());
                             let wo = direction(data.frame, data.quantity, wi, theta, phi);
                             let cos = if data.quantity == Reflection { wo.z } else { -wo.z };
-                            let found = t.eval_cos(true, wi, wo, data.quantity);
+                            let found = projected(&t, true, wi, data.quantity, wo);
                             for (channel, g) in found.into_iter().enumerate() {
                                 let channel = channel.min(data.channels - 1);
                                 let slice = lobe.slice(channel, j, i);
@@ -87,8 +87,8 @@ fn values_at_the_nodes_are_those_of_the_table() {
     }
 }
 
-/// Between the table's angles g is the linear mixture of its slices at the same angles of the lobe's own frame; before the first
-/// and beyond the last theta_i it is that slice.
+/// Between the table's angles g is the linear mixture of its slices at the same angles of the lobe's own
+/// frame; before the first and beyond the last theta_i it is that slice.
 #[test]
 fn incident_angles_mix_linearly_where_the_lobe_stands_still() {
     // At normal incidence itself the plane of incidence is another one: this many degrees stand for none.
@@ -99,7 +99,7 @@ fn incident_angles_mix_linearly_where_the_lobe_stands_still() {
         for data in &case.lobes {
             let g = |theta_i: f64, phi_i: f64, theta: f64, phi: f64| {
                 let wi = incidence(theta_i, phi_i);
-                t.eval_cos(true, wi, direction(data.frame, data.quantity, wi, theta, phi), data.quantity)
+                projected(&t, true, wi, data.quantity, direction(data.frame, data.quantity, wi, theta, phi))
             };
             let thetas = &data.theta_i_deg;
             let (first, last) = (thetas[0], thetas[thetas.len() - 1]);
@@ -162,32 +162,38 @@ fn albedo_is_the_integral_of_the_value_and_the_density_integrates_to_one() {
     }
 }
 
+/// Inverse functions with renormalisation and without: two ways to a cell, one density.
 #[test]
 fn samples_follow_the_density() {
     let surfaces = surfaces();
-    let level = sidak(FAMILY, surfaces.len() * incidences().len());
+    let level = sidak(FAMILY, 2 * surfaces.len() * incidences().len());
     for (k, surface) in surfaces.iter().enumerate() {
         let mut least = 1.0f64;
         for (d, wi) in incidences().into_iter().enumerate() {
-            let key = (k as u64) << 8 | d as u64;
-            let Some(test) = samples_against_density(surface, wi, 20_000, key) else { continue };
-            assert!(test.p_value > level, "{} {wi}: {test:?}", surface.name);
-            least = least.min(test.p_value);
+            for reuse in [true, false] {
+                let seed = (k as u64) << 8 | d as u64;
+                let test =
+                    photons_against_quadrature(surface, wi, 20_000, seed, (reuse, Sampling::default()));
+                assert!(test.p_value > level, "{} {wi} {reuse}: {test:?}", surface.name);
+                least = least.min(test.p_value);
+            }
         }
-        println!("{:<24} least p {least:.4} of 12 (level {level:.1e})", surface.name);
+        println!("{:<24} least p {least:.4} of 24 (level {level:.1e})", surface.name);
     }
 }
 
 #[test]
-fn sample_then_invert_returns_the_coordinates() {
+fn the_coordinates_of_a_photon_come_back() {
     for surface in surfaces() {
-        let checked: usize = incidences().into_iter().map(|wi| inverse_returns(&surface, wi, 1000)).sum();
+        let checked: usize =
+            incidences().into_iter().map(|wi| coordinates_come_back(&surface, wi, 1000)).sum();
+        println!("{:<24} {checked} photons", surface.name);
         assert!(checked >= 5000, "{}: {checked}", surface.name);
     }
 }
 
 #[test]
-fn the_jacobians_of_all_preimages_add_up_to_the_density() {
+fn the_jacobians_of_all_branches_add_up_to_the_density() {
     for surface in surfaces() {
         let (mut checked, mut several) = (0, 0);
         for wi in incidences() {
@@ -195,7 +201,7 @@ fn the_jacobians_of_all_preimages_add_up_to_the_density() {
             checked += some;
             several += of_several;
         }
-        println!("{:<24} {checked} points, {several} with several preimages", surface.name);
+        println!("{:<24} {checked} points, {several} of several branches", surface.name);
         assert!(checked > 200, "{}: {checked}", surface.name);
     }
 }
@@ -209,7 +215,7 @@ fn extremes_are_what_they_are_called() {
     let grazing = incidence(89.999, 310.0);
     assert!(wis.contains(&DVec3::Z) && wis.iter().any(|wi| (*wi - grazing).length() < 1e-12));
     let lit = |surface: &Surface, wi: DVec3| -> Vec<usize> {
-        let g = masses(surface, 0, wi).0;
+        let g = masses(surface, 0, wi);
         (0..g.len()).filter(|k| g[*k] > 0.0).collect()
     };
     let columns = |surface: &Surface| surface.lobes[0].azimuth_deg.len() - 1;
@@ -219,28 +225,20 @@ fn extremes_are_what_they_are_called() {
     assert!(lit(narrow, incidence(35.0, 8.0)).into_iter().eq(0..columns(narrow)));
 
     let one = named("one incidence");
-    let albedo = |surface: &Surface, theta_deg: f64| surface.sampler.albedo(true, incidence(theta_deg, 50.0));
+    let albedo = |surface: &Surface, theta_deg: f64| surface.albedo(incidence(theta_deg, 50.0));
     assert!(one.lobes[0].theta_i_deg == [30.0]);
-    assert!(wis.iter().all(|wi| one.sampler.albedo(true, *wi) == albedo(one, 30.0)));
+    assert!(wis.iter().all(|wi| one.albedo(*wi) == albedo(one, 30.0)));
 
     let black = named("a black slice");
     assert!(albedo(black, 20.0)[0] > 0.0 && albedo(black, 40.0)[0] > 0.0);
     // 30 degrees come back from a direction with rounding, which lets a neighbour in.
-    assert!(luminance(black.sampler.albedo(true, incidence(30.0, 270.0))) < 1e-15);
+    assert!(luminance(black.albedo(incidence(30.0, 270.0))) < 1e-15);
 
     assert_eq!(lit(named("one cell"), incidence(20.0, 0.0)).len(), 1);
 
     for name in ["ggx", "stops at 60 degrees", "anisotropic"] {
         assert!(below_horizon(named(name), grazing, 2000) > 0.01, "{name} crosses the horizon");
     }
-    let bsdf = Material::Tabulated(Box::new(named("ggx").sampler.clone()));
-    let points = IndependentPoints::new(3, 0);
-    let lost = (0..2000).any(|i| {
-        let mut c = Coordinates::new(&points, i, true);
-        matches!(bsdf.scatter(&arriving(grazing), &mut c, &mut Grey), Event::BelowHorizon)
-    });
-    assert!(lost, "light below the horizon is an account of its own");
-
     let wide = &named("1e12 range").lobes[0].values;
     let (low, high) = wide.iter().fold((f32::MAX, 0.0f32), |(low, high), v| (low.min(*v), high.max(*v)));
     assert!(low > 0.0 && f64::from(high) / f64::from(low) > 0.99e12, "{low} {high}");
@@ -259,7 +257,8 @@ fn extremes_are_what_they_are_called() {
     assert!((0..n).all(|k| cells.contains(&k)) && cells.iter().any(|k| k / n == rows - 1), "{cells:?}");
 }
 
-/// In the cells about a pole the azimuth of samples follows the conditional of a flat ring: even, at any size of theta.
+/// In the cells about a pole the azimuth of samples follows the conditional of a flat ring: even, at any size
+/// of theta.
 #[test]
 fn azimuths_are_even_about_the_pole() {
     let all = surfaces();
@@ -269,9 +268,9 @@ fn azimuths_are_even_about_the_pole() {
     let data = &narrow.lobes[0];
     let mut rings = [[0u64; 24]; 3];
     for i in 0..200_000u64 {
-        let (u1, u2) = (mix64(!(2 * i)), to_unit_f64(mix64(!(2 * i + 1))));
-        let s = narrow.sampler.sample(true, wi, u1, u2, Solver::DEFAULT).unwrap();
-        let (theta, phi) = angles(data.frame, data.quantity, wi, s.wo);
+        let event = narrow.scatter_by(wi, [0, mix64(!(2 * i)), mix64(!(2 * i + 1))]);
+        let Event::Leaves { direction, .. } = event else { panic!("{event:?}") };
+        let (theta, phi) = angles(data.frame, data.quantity, wi, direction);
         let ring = ((theta.to_degrees() / 5.0 * 3.0) as usize).min(2);
         let turn = (phi / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
         rings[ring][((24.0 * turn) as usize).min(23)] += 1;
@@ -281,16 +280,11 @@ fn azimuths_are_even_about_the_pole() {
         let test = chi_square(ring, &[1.0; 24]);
         assert!(test.p_value > level && test.degrees == 23, "{test:?}");
     }
-    // g falls linearly from the pole to the first node: P(theta < t) = (x^2 - 2 x^3 / 3) / (1/3) for x = t / step, but for the
-    // sine's curvature, 1e-3 of it.
+    // g falls linearly from the pole to the first node: P(theta < t) = (x^2 - 2 x^3 / 3) / (1/3) for x = t /
+    // step, but for the sine's curvature, 1e-3 of it.
     let inner = rings[0].iter().sum::<u64>() as f64 / 200_000.0;
     let expected = 3.0 * (1.0 / 9.0 - 2.0 / 81.0);
     assert!((inner - expected).abs() < 4.5 * (expected * (1.0 - expected) / 2e5).sqrt() + 1e-3, "{inner}");
-}
-
-/// A photon at a surface whose reference direction is x, arriving from wi.
-fn arriving(wi: DVec3) -> Incidence {
-    Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: true }
 }
 
 #[test]
@@ -304,50 +298,18 @@ fn rejection_follows_the_same_density() {
     assert_eq!(chosen.len(), wanted.len());
     for case in chosen {
         let surface = surface(case);
-        let t = &surface.sampler;
-        let bsdf = Material::Tabulated(Box::new(t.clone()));
         for (k, rejection) in ways.into_iter().enumerate() {
             for wi in wis {
-                let expected: Vec<Vec<f64>> =
-                    (0..case.lobes.len()).map(|lobe| masses(&surface, lobe, wi).0).collect();
-                let mut observed: Vec<Vec<u64>> = expected.iter().map(|m| vec![0; m.len()]).collect();
-                let points = IndependentPoints::new(40 + k as u64, 0);
-                let (n, mut below, mut absorbed) = (30_000u64, 0, 0);
-                for i in 0..n {
-                    let mut c = Coordinates::sampling_by(&points, i, false, Sampling::Rejection(rejection));
-                    match bsdf.scatter(&arriving(wi), &mut c, &mut Grey) {
-                        Event::Leaves { direction, through, .. } => {
-                            let quantity = if through { Transmission } else { Reflection };
-                            let lobe = case.lobes.iter().position(|l| l.quantity == quantity).unwrap();
-                            observed[lobe][cell(&surface, lobe, wi, direction)] += 1;
-                        }
-                        Event::BelowHorizon => below += 1,
-                        Event::Absorbed => absorbed += 1,
-                    }
-                }
-                // Below the horizon there is no direction to count: the cells that may reach there are one.
-                let safe: Vec<bool> =
-                    (0..case.lobes.len()).flat_map(|lobe| above(&surface, lobe, wi)).collect();
-                let (mut counts, mut weights) = (vec![absorbed, below], vec![0.0; 2]);
-                weights[0] = 1.0 - luminance(t.albedo(true, wi));
-                for ((count, weight), safe) in observed.concat().into_iter().zip(expected.concat()).zip(safe)
-                {
-                    if safe {
-                        counts.push(count);
-                        weights.push(weight);
-                    } else {
-                        counts[1] += count;
-                        weights[1] += weight;
-                    }
-                }
-                let test = chi_square(&counts, &weights);
+                let way = (false, Sampling::Rejection(rejection));
+                let test = photons_against_quadrature(&surface, wi, 30_000, 40 + k as u64, way);
                 assert!(test.p_value > level, "{} {rejection:?} {wi}: {test:?}", case.name);
             }
         }
     }
 }
 
-/// Means over photons of what goes on, by channel, and of that times cos(theta_o): against albedo and quadrature.
+/// Means over photons of what goes on, by channel, and of that times cos(theta_o): against albedo and
+/// quadrature.
 #[test]
 fn colour_is_carried_without_bias_and_luminance_stays_one() {
     let cases = cases();
@@ -356,7 +318,7 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
         let options = Options { specular_remainder: remainder, ..Options::default() };
         let t = Tabulated::new(&case.table(), &options).unwrap().0;
         for (d, wi) in [incidence(20.0, 0.0), incidence(50.0, 90.0)].into_iter().enumerate() {
-            let albedo = t.albedo(true, wi);
+            let albedo = local::albedo(&t, true, wi);
             let mirrored = DVec3::new(-wi.x, -wi.y, wi.z);
             // A photon that red walls have met: the weights are what reflect() leaves, luminance 1.
             let mut red = Rgb::WHITE;
@@ -370,7 +332,7 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
                 for i in 0..n {
                     let mut photon = start;
                     let mut c = Coordinates::new(&points, i, true);
-                    let gone = match t.scatter(&arriving(wi), &mut c, &mut photon) {
+                    let gone = match t.scatter(&local::arriving(true, wi), &mut c, &mut photon) {
                         Event::Leaves { direction, .. } => direction != mirrored,
                         Event::BelowHorizon => true,
                         Event::Absorbed => {
@@ -406,7 +368,10 @@ fn colour_is_carried_without_bias_and_luminance_stays_one() {
             for i in 0..n {
                 let mut photon = Fixed::white(1);
                 let mut c = Coordinates::new(&points, i, true);
-                assert!(!matches!(t.scatter(&arriving(wi), &mut c, &mut photon), Event::Absorbed));
+                assert!(!matches!(
+                    t.scatter(&local::arriving(true, wi), &mut c, &mut photon),
+                    Event::Absorbed
+                ));
                 for (sum, w) in sums.iter_mut().zip(photon.weight()) {
                     sum[0] += w;
                     sum[1] += w * w;

@@ -1,13 +1,17 @@
-//! The checks of a tabulated surface on files: the project's own tables, real ones where they are at hand, a MERL file. Value,
-//! albedo, density, sample and its inverse against each other and against quadrature, at twelve incident directions each.
+//! The checks of a tabulated surface on files: the project's own tables, real ones where they are at hand, a
+//! MERL file. Value, albedo, density, sample and its inverse against each other and against quadrature, at
+//! twelve incident directions each.
 
 use std::path::{Path, PathBuf};
 
 use crate::support::data::project;
 use crate::support::statistics::sidak;
+use caustix::sample::method::Sampling;
+
+use crate::support::local::luminance;
 use crate::table_checks::{
-    Surface, below_horizon, incidences_of, integrals_agree, inverse_returns, jacobians_add_up,
-    samples_against_density, sides,
+    Surface, below_horizon, coordinates_come_back, incidences_of, integrals_agree, jacobians_add_up,
+    photons_against_quadrature, sides,
 };
 
 /// Chance of a false alarm in a whole test.
@@ -18,34 +22,35 @@ fn check(surfaces: &[Surface]) {
     let level = sidak(FAMILY, 12 * surfaces.len());
     for (k, surface) in surfaces.iter().enumerate() {
         let (mut worst, mut below, mut least) = (0.0f64, 0.0f64, 1.0f64);
-        let (mut inverted, mut points, mut several, mut lit) = (0, 0, 0, 0);
+        let (mut back, mut points, mut several) = (0, 0, 0);
         let incidences = incidences_of(surface);
         assert_eq!(incidences.len(), 12);
         for (d, wi) in incidences.into_iter().enumerate() {
             worst = worst.max(integrals_agree(surface, wi));
             below = below.max(below_horizon(surface, wi, 2000));
-            if let Some(test) = samples_against_density(surface, wi, 20_000, (k as u64) << 8 | d as u64) {
-                assert!(test.p_value > level, "{} {wi}: {test:?}", surface.name);
-                least = least.min(test.p_value);
-                lit += 1;
-            }
-            inverted += inverse_returns(surface, wi, 1000);
+            assert!(luminance(surface.albedo(wi)) > 0.0, "{} is black somewhere", surface.name);
+            let way = (d % 2 == 0, Sampling::default());
+            let test = photons_against_quadrature(surface, wi, 20_000, (k as u64) << 8 | d as u64, way);
+            assert!(test.p_value > level, "{} {wi}: {test:?}", surface.name);
+            least = least.min(test.p_value);
+            back += coordinates_come_back(surface, wi, 1000);
             let (some, of_several) = jacobians_add_up(surface, wi, 300);
             points += some;
             several += of_several;
         }
         println!(
-            "{}: albedo against quadrature {worst:.1e}; least p {least:.4} of {lit} (level {level:.1e}); below the horizon \
-             up to {:.1} %; {inverted} inverted; Jacobian at {points} points, {several} of several preimages",
+            "{}: albedo against quadrature {worst:.1e}; least p {least:.4} of 12 (level {level:.1e}); below the horizon up \
+             to {:.1} %; {back} came back; Jacobian at {points} points, {several} of several branches",
             surface.name,
             100.0 * below
         );
-        assert_eq!((lit, inverted), (12, 12_000), "{} is black somewhere", surface.name);
+        assert!(back > 5000, "{}: {back}", surface.name);
         assert!(points > 1200, "{}: {points}", surface.name);
     }
 }
 
-/// The sides of the tables in a folder and those below it, in the order of their paths; and what is not read, with the reason.
+/// The sides of the tables in a folder and those below it, in the order of their paths; and what is not read,
+/// with the reason.
 fn surfaces_of(folder: &Path, below: &Path) -> (Vec<Surface>, Vec<String>) {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(below).unwrap().map(|e| e.unwrap().path()).collect();
     paths.sort();
@@ -96,6 +101,6 @@ fn a_merl_file_holds() {
     let table = caustix::files::bsdf::parse(&bytes, "lobe.binary").unwrap();
     assert!(table.warnings.iter().any(|w| w.found().contains("not measured")), "{:?}", table.warnings);
     let surfaces = sides("lobe.binary", &table);
-    assert!(surfaces.len() == 1 && surfaces[0].sampler.is_coloured());
+    assert!(surfaces.len() == 1 && caustix::surface::Model::is_coloured(&surfaces[0].sampler));
     check(&surfaces);
 }

@@ -6,17 +6,19 @@ use caustix::lab::certificate::{Certificate, Density, Draw, Judge, PointKind, RE
 use caustix::math::solve::Solver;
 use caustix::photometry::Photometry;
 use caustix::run::{Algorithm, Variant};
+use caustix::sample::angles::Row;
+use caustix::sample::cell::Cell;
 use caustix::sample::choose::Reusable;
 use caustix::sample::discrete::Discrete;
 use caustix::sample::grid::Grid;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::{Points, Sequence, to_unit_f64};
-use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::support::data;
 use crate::support::density::{Density as Reference, ends};
+use crate::support::sphere_table::SphereTable;
 
 fn grid_of(photometry: &Photometry) -> Grid {
     let full = photometry.web.full_grid();
@@ -161,14 +163,10 @@ fn right_samplers_rarely_fail() {
     }
 }
 
-/// A sampler by inverse functions that can be spoilt.
-struct Spoilt<'g> {
-    grid: &'g Grid,
+/// A sampler by inverse functions that can be spoilt: shares of the cells by quadrature.
+struct Spoilt {
+    table: SphereTable,
     choice: Discrete,
-    /// First fraction and width of every cell, on [0, 1).
-    shares: Vec<(f64, f64)>,
-    /// Width of the columns, all alike.
-    column_rad: f64,
     wrong: Wrong,
 }
 
@@ -186,67 +184,55 @@ enum Wrong {
     Shifted,
 }
 
-impl<'g> Spoilt<'g> {
-    fn new(grid: &'g Grid, column_rad: f64, wrong: Wrong) -> Self {
-        let mut weights: Vec<f64> = Vec::new();
-        // Probabilities of the cells that there are; their number is known by the sum.
-        while weights.iter().sum::<f64>() < 1.0 - 1e-13 {
-            weights.push(grid.choice().probability(weights.len()));
-        }
-        let mut low = 0.0;
-        let shares = weights
-            .iter()
-            .map(|w| {
-                low += w;
-                (low - w, *w)
-            })
-            .collect();
+impl Spoilt {
+    fn new(photometry: &Photometry, wrong: Wrong) -> Self {
+        let full = photometry.web.full_grid();
+        let table = SphereTable::new(full.polar_rad, full.azimuth_rad, full.intensity_cd);
+        let columns = table.azimuth.len() - 1;
+        let cells = (table.polar.len() - 1) * columns;
+        let mut weights: Vec<f64> = (0..cells).map(|k| table.part(k / columns, k % columns)).collect();
         if let Wrong::Flux(factor) = wrong {
-            let brightest = (0..weights.len()).max_by(|a, b| weights[*a].total_cmp(&weights[*b])).unwrap();
+            let brightest = (0..cells).max_by(|a, b| weights[*a].total_cmp(&weights[*b])).unwrap();
             weights[brightest] *= factor;
         }
-        Self { grid, choice: Discrete::new(&weights).unwrap(), shares, column_rad, wrong }
+        Self { table, choice: Discrete::new(&weights).unwrap(), wrong }
     }
 
     fn draw(&self, points: &impl Points, index: u64) -> Draw {
         let (u1, u2) = (points.coordinate(index, 0), to_unit_f64(points.coordinate(index, 1)));
+        let SphereTable { polar, azimuth, .. } = &self.table;
         let mut u = Reusable::fresh(u1);
-        let (cell, _) = self.choice.choose(&mut u);
+        let (chosen, _) = self.choice.choose(&mut u);
+        let (i, j) = (chosen / (azimuth.len() - 1), chosen % (azimuth.len() - 1));
         let mut u_theta = to_unit_f64(u.bits());
         if self.wrong == Wrong::NoDivision {
-            u_theta = (to_unit_f64(u1) - self.shares[cell].0).clamp(0.0, 1.0 - f64::EPSILON);
+            u_theta = (u_theta * self.table.part(i, j)).clamp(0.0, 1.0 - f64::EPSILON);
         }
-        let mut at = self.grid.place(cell, u_theta, u2, Solver::DEFAULT);
-        let full = self.grid.place(cell, 0.0, 0.0, Solver::DEFAULT);
+        let row = Row::new(polar[i], polar[i + 1]);
+        let at = |i: usize, j: usize| self.table.values[i * azimuth.len() + j];
+        let corners = [at(i, j), at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)];
+        let cell = Cell::new(&row, corners).unwrap();
+        let mut s = cell.sample_theta(&row, u_theta, Solver::DEFAULT).s;
+        let x = cell.sample_phi(&row, s, u2);
         if self.wrong == Wrong::NoSine {
-            at.theta = self.without_sine(full.theta, cell, u_theta);
+            s = without_sine([corners[0] + corners[1], corners[2] + corners[3]], u_theta) * row.width;
         }
-        if self.wrong == Wrong::Shifted {
-            at.phi = (at.phi + self.column_rad).rem_euclid(TAU);
-        }
-        Draw { theta_rad: at.theta, phi_rad: at.phi, coordinates: 2 }
-    }
-
-    /// theta by the marginal of the bilinear candela of this cell, linear from a to b over its width.
-    fn without_sine(&self, theta: f64, cell: usize, u: f64) -> f64 {
-        let last = self.grid.place(cell, 1.0 - f64::EPSILON, 0.5, Solver::DEFAULT);
-        let width = last.theta - theta;
-        let middle = self.grid.place(cell, 0.5, 0.5, Solver::DEFAULT).phi;
-        let inside = |x: f64| self.grid.value(theta + x * width, middle);
-        let (a, b) = (inside(1e-9), inside(1.0 - 1e-9));
-        let x = if (b - a).abs() < 1e-9 * (a + b) {
-            u
-        } else {
-            ((a * a + u * (b * b - a * a)).max(0.0).sqrt() - a) / (b - a)
-        };
-        theta + x.clamp(0.0, 1.0) * width
+        let column = if self.wrong == Wrong::Shifted { j + 1 } else { j } % (azimuth.len() - 1);
+        let phi_rad = azimuth[column] + x * (azimuth[column + 1] - azimuth[column]);
+        Draw { theta_rad: row.theta + s, phi_rad, coordinates: 2 }
     }
 }
 
+/// Where in its cell theta is by the marginal of the candela alone, linear from a to b.
+fn without_sine([a, b]: [f64; 2], u: f64) -> f64 {
+    if (b - a).abs() < 1e-9 * (a + b) {
+        return u;
+    }
+    (((a * a + u * (b * b - a * a)).max(0.0).sqrt() - a) / (b - a)).clamp(0.0, 1.0)
+}
+
 fn judged(photometry: &Photometry, wrong: Wrong, kind: PointKind, n: u64) -> Certificate {
-    let grid = grid_of(photometry);
-    let azimuth_rad = photometry.web.full_grid().azimuth_rad;
-    let spoilt = Spoilt::new(&grid, azimuth_rad[1] - azimuth_rad[0], wrong);
+    let spoilt = Spoilt::new(photometry, wrong);
     let density = Density::new(&photometry.web).unwrap();
     let mut judge = Judge::new(&density, kind);
     match kind {

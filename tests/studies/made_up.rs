@@ -1,7 +1,7 @@
 //! Made-up studies whose laws are known.
 
 use caustix::lab::study::norms::Errors;
-use caustix::lab::study::results::{Account, Reference, Run, Study, VariantResult};
+use caustix::lab::study::results::{Account, ReferenceUsed, Run, Study, VariantResult};
 
 /// A number of [0, 1) for an index (SplitMix64's finaliser).
 pub fn uniform(index: u64) -> f64 {
@@ -81,7 +81,7 @@ pub fn study(ladder: &[u64], seeds: u64, noise: f64) -> Study {
         ladder: ladder.into(),
         seeds: (1..=seeds).collect(),
         threads: 2,
-        reference: Reference {
+        reference: ReferenceUsed {
             photons: 100 * largest,
             replicates: 16,
             sequence: "halton-rotation".into(),

@@ -10,4 +10,5 @@ mod compare_numbers;
 mod compare_report;
 mod compare_resume;
 mod made_up;
+mod reference;
 mod room;

@@ -9,7 +9,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use caustix::files::scene_toml::read;
 use caustix::geometry::Shape;
-use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task, measure};
+use caustix::lab::room::measure::measure;
+use caustix::lab::room::{Measurement, Options, RoomStudy, SEQUENCES, Task};
 use caustix::report::room as report;
 use caustix::scene::Scene;
 use caustix::scene::requires::requirements;
@@ -128,7 +129,7 @@ fn grey_written_as_colour_is_grey() {
     let b = sphere("type = \"lambertian\"\nreflectance = [0.7, 0.7, 0.7]", "");
     assert!(!requirements(&b).contains(&"colour"));
     let outcomes = [&a, &b].map(|s| run(s, Sequence::SobolOwen, 1 << 12, 4, 6));
-    assert_eq!(outcomes[0].cells[0], outcomes[1].cells[0]);
+    assert_eq!(outcomes[0].cells()[0], outcomes[1].cells()[0]);
     assert_eq!(outcomes[0].ledger, outcomes[1].ledger);
 }
 
@@ -198,7 +199,7 @@ fn the_room_is_closed_and_has_276_triangles() {
     for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
         let outcome = run(&scene, sequence, 1 << 16, 8, seed);
         assert_eq!(outcome.ledger.escaped, 0);
-        assert!(outcome.totals.sum.iter().sum::<u64>() > outcome.photons);
+        assert!(outcome.totals().sum.iter().sum::<u64>() > outcome.photons);
     }
 }
 
@@ -270,7 +271,7 @@ fn weights_and_roulette_agree_in_the_room() {
     for (r, receiver) in dim.receivers.iter().enumerate() {
         for cell in 0..receiver.cells.len() {
             let roulette = outcome.illuminance_lx(r, cell, receiver.area_m2(cell));
-            let hits = outcome.cells[r].sum[cell];
+            let hits = outcome.cells()[r].sum[cell];
             let values: Vec<f64> = sets.iter().map(|s| s[cell_of_all]).collect();
             cell_of_all += 1;
             if hits < 160 {
@@ -310,14 +311,15 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn a_study_in_small() {
     let scene = room("", 4);
-    let options = Options { ladder: vec![500, 2_000, 16_000], seeds: vec![1, 2] };
+    let options = Options::new(vec![500, 2_000, 16_000], vec![1, 2]).unwrap();
     let photons = std::sync::atomic::AtomicU64::new(0);
     let count = |n| {
         photons.fetch_add(n, std::sync::atomic::Ordering::Relaxed);
     };
+    let tasks = options.tasks();
     let of = |task: &Task| measure(&scene, task, clock, &AtomicBool::new(false), &count).unwrap();
-    let found =
-        RoomStudy::new(&scene, &options, &options.tasks().iter().map(of).collect::<Vec<_>>()).unwrap();
+    let mut measurements: Vec<Measurement> = tasks.iter().map(of).collect();
+    let found = RoomStudy::new(&scene, &options, &measurements).unwrap();
     assert_eq!(photons.into_inner(), options.photons());
     assert_eq!(options.photons(), 6 * 18_500);
     assert!(found.is_closed());
@@ -325,7 +327,8 @@ fn a_study_in_small() {
     assert_eq!(found.between().len(), 10);
     for d in found.deviations() {
         assert!(d.value.mean > 0.0 && d.value.mean < 0.3, "{d:?}");
-        assert_eq!(d.value.spread.is_some(), d.sequence == 0);
+        assert_eq!(d.value.spread.is_some(), d.sequences[0] == 0);
+        assert!(d.sequences[0] == d.sequences[1] && d.photons[0] < d.photons[1], "{d:?}");
     }
     let rows = found.rows();
     assert_eq!(rows.len(), SEQUENCES.len() * 3);
@@ -335,8 +338,6 @@ fn a_study_in_small() {
         assert!(row.ratio_equal_n >= 1.0 || row.photons == 500, "{row:?}");
     }
     // Finished measurements in any order make the same study.
-    let mut measurements: Vec<Measurement> =
-        (0..SEQUENCES.len()).flat_map(|s| found.runs(s).iter().flatten().cloned()).collect();
     measurements.reverse();
     assert_eq!(RoomStudy::new(&scene, &options, &measurements).unwrap(), found);
     measurements.pop();
@@ -368,6 +369,13 @@ fn a_study_in_small() {
 
 #[test]
 fn what_a_study_needs_is_asked_for() {
+    for (ladder, seeds) in
+        [(vec![], vec![1]), (vec![5], vec![1]), (vec![5, 5], vec![1]), (vec![5, 6], vec![])]
+    {
+        assert!(Options::new(ladder, seeds).is_err());
+    }
+    assert_eq!(Options::paper_ladder(false), [10_000, 100_000, 1_000_000]);
+    assert_eq!(Options::paper_ladder(true)[3..], [10_000_000]);
     let without = sphere("type = \"lambertian\"\nreflectance = 0.5", "");
     let error = measure(&without, &task(Sequence::Sobol, 0, 10), clock, &AtomicBool::new(false), &|_| {})
         .unwrap_err();

@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 
 use caustix::math::solve::Solver;
 use caustix::photometry::Web;
-use caustix::sample::cell::{Cell, Row};
+use caustix::sample::angles::Row;
+use caustix::sample::cell::Cell;
 use caustix::sequence::hash::mix64;
 use caustix::sequence::to_unit_f64;
 use roots::{
@@ -37,7 +38,7 @@ impl Case {
     /// `None` where the cell has no flux.
     pub fn new(theta1: f64, theta2: f64, corners: [f64; 4]) -> Option<Self> {
         let row = Row::new(theta1, theta2);
-        let cell = Cell::new(&row, 0, 0, corners)?;
+        let cell = Cell::new(&row, corners)?;
         let edges = (corners[0] + corners[1], corners[2] + corners[3]);
         let mut case = Self { row, cell, edges, whole: 1.0 };
         case.whole = case.mass_by_quadrature(row.width);

@@ -47,10 +47,14 @@ pub fn scene(
     for (i, emitter) in emitters.into_iter().enumerate() {
         scene.emitter(format!("lamp{i}"), emitter);
     }
-    if let Some(camera) = camera {
-        scene.camera(Camera::new(camera).unwrap());
+    if let Some(spec) = camera {
+        scene.camera(self::camera(spec));
     }
     scene.build().unwrap()
+}
+
+pub fn camera(spec: CameraSpec) -> Camera {
+    Camera::new(spec).unwrap()
 }
 
 pub fn plan(photons: u64, replicates: u32) -> Plan {

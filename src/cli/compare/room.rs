@@ -18,8 +18,7 @@ use super::{CompareArgs, seeds};
 /// Runs the study; the exit code.
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     refuse_what_has_no_meaning(args)?;
-    let mut options = Options::new(args.full);
-    options.seeds = seeds(args)?;
+    let options = Options::new(Options::paper_ladder(args.full), seeds(args)?)?;
     make_directory(&args.output)?;
     catch_interrupts();
     let pool = thread_pool(args.threads)?;

@@ -11,11 +11,11 @@ use crate::files::parts::{Parts, from_bytes, to_bytes};
 use crate::lab::study::account::Events;
 use crate::lab::study::cells::Grids;
 use crate::lab::study::reference::{
-    MOST_REFERENCE_PHOTONS, REPLICATES, Reference, ReferencePlan, emission_map, trace_replicate,
+    MOST_REFERENCE_PHOTONS, REPLICATES, Reference, ReferencePlan, SEQUENCE, emission_map, trace_replicate,
 };
 use crate::lab::study::results;
 use crate::lab::study::results::{Run, Study, VariantResult};
-use crate::lab::study::runs::{LADDER_OCTAVES, Measure, ladder};
+use crate::lab::study::runs::{LADDER_OCTAVES, ladder};
 use crate::lab::study::table::Table;
 use crate::plot::compare::drawing;
 use crate::report::compare::csv::csv;
@@ -85,8 +85,8 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
 }
 
 /// What is asked for, made definite.
-struct Asked {
-    grids: Grids,
+struct Asked<'s> {
+    grids: Grids<'s>,
     algorithms: Vec<Algorithm>,
     seeds: Vec<u64>,
     photons: u64,
@@ -94,8 +94,8 @@ struct Asked {
     reference: ReferencePlan,
 }
 
-impl Asked {
-    fn new(args: &CompareArgs, scene: &Scene) -> Result<Self> {
+impl<'s> Asked<'s> {
+    fn new(args: &CompareArgs, scene: &'s Scene) -> Result<Self> {
         let cells = if args.cells.is_empty() { &DEFAULT_CELLS[..] } else { &args.cells };
         let mut cells = cells.to_vec();
         let mut seen = Vec::new();
@@ -168,7 +168,7 @@ fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
 /// A study under way.
 struct Job<'a> {
     scene: &'a Scene,
-    asked: Asked,
+    asked: Asked<'a>,
     parts: Parts,
     progress: &'a Progress,
 }
@@ -201,13 +201,13 @@ impl Job<'_> {
             ladder: asked.ladder.clone(),
             seeds: asked.seeds.clone(),
             threads: rayon::current_num_threads(),
-            reference: results::Reference {
+            reference: results::ReferenceUsed {
                 photons: asked.reference.photons(),
                 replicates: REPLICATES,
-                sequence: asked.reference.sequence.name().into(),
+                sequence: SEQUENCE.name().into(),
                 emission_map: emission_map(self.scene).into(),
                 seed: asked.reference.seed,
-                own_nrms: reference.own_nrms.clone(),
+                own_nrms: reference.own_nrms().to_vec(),
                 factor: asked.reference.photons() as f64 / asked.photons as f64,
             },
             variants: asked.algorithms.iter().zip(runs).map(variant).collect(),
@@ -216,12 +216,12 @@ impl Job<'_> {
     }
 
     /// The reference and its key; `None` after an interrupt.
-    fn reference(&self) -> Result<Option<(Reference, String)>> {
+    fn reference(&self) -> Result<Option<(Reference<'_>, String)>> {
         let plan = &self.asked.reference;
         let key = format!(
             "{}\nreference: {} seed {}, {REPLICATES} x {} photons, {}\ngrids: {:?} of {:?}",
             scene_key(self.scene),
-            plan.sequence.name(),
+            SEQUENCE.name(),
             plan.seed,
             plan.photons_per_replicate,
             emission_map(self.scene),
@@ -240,22 +240,20 @@ impl Job<'_> {
                 replicates.push(counts);
                 continue;
             }
-            let traced =
-                trace_replicate(self.scene, &self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
-                    self.progress.add(n);
-                })?;
+            let traced = trace_replicate(&self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
+                self.progress.add(n);
+            })?;
             let Some(counts) = traced else { return Ok(None) };
             self.parts.store("reference", &part, &to_bytes(&counts))?;
             replicates.push(counts);
         }
-        Ok(Some((Reference::new(self.scene, &self.asked.grids, plan, &replicates), key)))
+        Ok(Some((Reference::new(&self.asked.grids, plan, &replicates)?, key)))
     }
 
     /// Every run that is finished, by variant. Variants take turns, so that a machine that gets slower or faster does so
     /// for all of them.
-    fn runs(&self, reference: &Reference, reference_key: &str) -> Result<Vec<Vec<Run>>> {
+    fn runs(&self, reference: &Reference<'_>, reference_key: &str) -> Result<Vec<Vec<Run>>> {
         let asked = &self.asked;
-        let measure = Measure { scene: self.scene, grids: &asked.grids, reference, clock: processor_time };
         let mut runs = vec![Vec::new(); asked.algorithms.len()];
         for (k, seed) in asked.seeds.iter().enumerate() {
             for (algorithm, runs_of) in asked.algorithms.iter().zip(&mut runs) {
@@ -263,7 +261,7 @@ impl Job<'_> {
                     continue;
                 }
                 self.progress.say(format!("{}, seed {} of {}", algorithm.name(), k + 1, asked.seeds.len()));
-                match self.run(&measure, *algorithm, *seed, reference_key)? {
+                match self.run(reference, *algorithm, *seed, reference_key)? {
                     Some(found) => runs_of.extend(found),
                     None => return Ok(runs),
                 }
@@ -275,7 +273,7 @@ impl Job<'_> {
     /// One point set of one algorithm, found or traced; `None` after an interrupt.
     fn run(
         &self,
-        measure: &Measure<'_>,
+        reference: &Reference<'_>,
         algorithm: Algorithm,
         seed: u64,
         reference_key: &str,
@@ -287,7 +285,8 @@ impl Job<'_> {
             return Ok(Some(found));
         }
         let progress = |n| self.progress.add(n);
-        let traced = measure.ladder(algorithm, seed, &asked.ladder, &INTERRUPTED, &progress)?;
+        let traced =
+            reference.measure(algorithm, seed, &asked.ladder, processor_time, &INTERRUPTED, &progress)?;
         if let Some(traced) = &traced {
             store_json(&self.parts, "run", &key, traced)?;
         }

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::table::{DIRECTION, Table};
+use super::numbers::DIRECTION;
+use super::table::Table;
 use crate::error::Kind;
 use crate::error::invalid::Interval;
 use crate::geometry::{COORDINATE, LENGTH};

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
-use super::EmitterPart;
 use super::loader::Make;
 use super::names::Names;
-use super::table::{DIRECTION, Table};
+use super::numbers::DIRECTION;
+use super::parts::EmitterPart;
+use super::table::Table;
 use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emitter, FLUX, Isotropic, Panel, Photometric,

@@ -2,24 +2,21 @@
 
 use glam::DVec3;
 
-use super::MaterialPart;
 use super::loader::Make;
+use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
+use super::parts::MaterialPart;
 use super::table::Table;
-use crate::error::invalid::Interval;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;
 use crate::geometry::{ANGLE, Shape};
+use crate::math::frame::unit;
+use crate::surface::dielectric::IOR;
+use crate::surface::diffuse_transmission::TRANSMITTANCE;
+use crate::surface::reflectance::REFLECTANCE;
 use crate::surface::tabulated::{Energy, Options, Sides};
 use crate::surface::{
-    Dielectric, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated, dielectric, reflectance,
+    Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated,
 };
-
-const IOR: Interval = interval(dielectric::RANGE, dielectric::REQUIRED);
-const REFLECTANCE: Interval = interval(reflectance::RANGE, reflectance::REQUIRED);
-
-const fn interval([low, high]: [f64; 2], words: &'static str) -> Interval {
-    Interval { low, high, words }
-}
 
 const TYPES: [&str; 5] = ["dielectric", "mirror", "lambertian", "absorber", "tabulated"];
 
@@ -64,9 +61,15 @@ fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
 
 fn read_lambertian(table: &mut Table<'_, '_>) -> Option<Material> {
     table.call("a lambertian material");
-    let rgb = table.number_or_vector("reflectance", &REFLECTANCE);
-    let rgb = table.require("reflectance", rgb, REFLECTANCE.words)?;
-    let reflectance = table.accept(Reflectance::rgb(rgb.to_array()))?;
+    let reflectance = table.number_or_vector("reflectance", &REFLECTANCE);
+    let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+    let transmittance = table.number_or_vector("transmittance", &TRANSMITTANCE).unwrap_or(DVec3::ZERO);
+    let reflectance = reflectance?.to_array();
+    if transmittance != DVec3::ZERO {
+        let sheet = DiffuseTransmission::new(reflectance, transmittance.to_array());
+        return table.accept(sheet).map(Material::DiffuseTransmission);
+    }
+    let reflectance = table.accept(Reflectance::rgb(reflectance))?;
     Some(Material::Lambertian(Lambertian::new(reflectance)))
 }
 
@@ -89,9 +92,11 @@ fn read_tabulated(table: &mut Table<'_, '_>, reference: &mut Option<DVec3>) -> O
     let file = table.path("file");
     let sides = table.word("side", &SIDES).unwrap_or_default();
     let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
-    if table.place_of("reference").is_some() {
-        *reference = Some(table.direction("reference", None)?);
+    let along = table.vector("reference", &DIRECTION);
+    if along.is_some_and(|v| unit(v).is_none()) {
+        table.error("reference", Kind::Range, DIRECTION_REQUIRED);
     }
+    *reference = along.and_then(unit);
     let energy = table.word("energy", &ENERGIES).unwrap_or_default();
     let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
     let file = file?;

@@ -98,10 +98,6 @@ impl Names {
             many => format!("one of the {many} {what}s of this scene"),
         };
         let found = format!("the unknown {what} `{}`", shown(name));
-        let error = Diagnostic::new(Kind::Unknown, found, required);
-        match suggest::nearest(name, &names) {
-            Some(near) => error.hint(format!("did you mean `{near}`?")),
-            None => error,
-        }
+        suggest::hinted(Diagnostic::new(Kind::Unknown, found, required), suggest::nearest(name, &names), '`')
     }
 }

@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
+use super::heightfield;
 use super::loader::Make;
 use super::names::Names;
+use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
+use super::parts::SurfacePart;
 use super::table::Table;
-use super::{SurfacePart, heightfield};
 use crate::files::obj::{ObjOptions, parse_obj};
 use crate::geometry::{
     ANGLE, COORDINATE, LENGTH, Paraboloid, Rectangle, SCALE, Shape, Smoothing, Sphere, Transform, box_mesh,
@@ -110,7 +112,7 @@ fn read_sphere(table: &mut Table<'_, '_>) -> Option<Sphere> {
 fn read_paraboloid(table: &mut Table<'_, '_>) -> Option<Paraboloid> {
     table.call("a paraboloid");
     let vertex = table.needed_vector("vertex", &COORDINATE, POINT);
-    let axis = table.direction("axis", None);
+    let axis = table.needed_vector("axis", &DIRECTION, DIRECTION_REQUIRED);
     let focal_length = table.needed_number("focal_length", &LENGTH);
     let radius = table.needed_number("radius", &LENGTH);
     table.accept(Paraboloid::new(vertex?, axis?, focal_length?, radius?))

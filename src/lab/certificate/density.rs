@@ -1,15 +1,15 @@
 //! The density that a photometric file stands for, by quadrature of its own candela.
 //!
-//! Cells are those of the unfolded table ([`Web::full_grid`]): only its angles are used here. Their masses and the
-//! distribution functions come from values of [`Web::intensity_cd`], the bilinear interpolation (eq. 7) between the angles
-//! as they are stored, symmetry folded in, and from Gauss-Legendre quadrature under sin(theta). Nothing is shared with
-//! what samples (`sample::grid`, `sample::cell`): neither its table of cells nor an antiderivative.
+//! Cells are those of the unfolded table ([`Web::full_grid`]), of which only the angles are used. Masses and
+//! distribution functions come from [`Web::intensity_cd`], bilinear (eq. 7) in the angles as stored, by
+//! Gauss-Legendre quadrature under sin(theta). Nothing is shared with the sampler (`sample::grid`,
+//! `sample::cell`): no table of cells, no antiderivative.
 //!
-//! Inside a cell the candela is linear in theta at fixed phi and linear in phi at fixed theta (eq. 7), so two nodes along
-//! either angle determine it; all nodes lie inside cells, where rounding cannot put them into another one.
+//! Inside a cell the candela is linear in either angle, so two nodes along each determine it. All nodes lie
+//! inside cells, where rounding cannot put them into another one.
 
+use super::quadrature::{Gauss, TWO_POINT, at_nodes};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::lab::certificate::quadrature::{Gauss, TWO_POINT};
 use crate::photometry::{PhotometricType, Web};
 
 /// The density of directions of a file, over the grid angles theta and phi of [`Web::full_grid`].
@@ -28,19 +28,6 @@ pub struct Density<'w> {
     below_lm: Vec<f64>,
 }
 
-/// A direction as the density's distribution functions see it; each number is uniform on [0, 1] under the density.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Distribution function of theta.
-    pub theta: f64,
-    /// Distribution function of phi given theta.
-    pub phi: f64,
-    /// Distribution function of theta given its row.
-    pub theta_in_row: f64,
-    /// Distribution function of phi given theta and the column.
-    pub phi_in_column: f64,
-}
-
 /// By how many ulps of the last angle a computed angle may lie beyond it.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -52,30 +39,18 @@ impl<'w> Density<'w> {
     pub fn new(web: &'w Web) -> Result<Self> {
         let grid = web.full_grid();
         let (polar_rad, azimuth_rad) = (grid.polar_rad, grid.azimuth_rad);
-        let fail = |found: String| {
-            Err(Diagnostic::new(Kind::Range, found, "a table of at least one cell that emits something"))
-        };
-        if polar_rad.len() < 2 || azimuth_rad.len() < 2 {
-            return fail(format!("{} polar and {} azimuth angles", polar_rad.len(), azimuth_rad.len()));
-        }
-        let (rows, columns) = (polar_rad.len() - 1, azimuth_rad.len() - 1);
-        let mut density = Self {
-            web,
-            polar_rad,
-            azimuth_rad,
-            rule: Gauss::new(),
-            along_phi: Vec::with_capacity(rows * (columns + 1)),
-            mass_lm: Vec::with_capacity(rows * columns),
-            below_lm: Vec::with_capacity(rows + 1),
-        };
+        let rule = Gauss::new();
+        let (along_phi, mass_lm, below_lm) = (Vec::new(), Vec::new(), vec![0.0]);
+        let mut density = Self { web, polar_rad, azimuth_rad, rule, along_phi, mass_lm, below_lm };
         let mut total_lm = 0.0;
-        density.below_lm.push(0.0);
-        for row in 0..rows {
-            total_lm += density.add_row(row);
+        for row in 1..density.polar_rad.len() {
+            total_lm += density.add_row(row - 1);
             density.below_lm.push(total_lm);
         }
         if !(total_lm > 0.0 && total_lm.is_finite()) {
-            return fail(format!("a table whose integral over the sphere is {total_lm}"));
+            let found = format!("a table whose integral over the sphere is {total_lm}");
+            let required = "a table of at least one cell that emits something";
+            return Err(Diagnostic::new(Kind::Range, found, required));
         }
         Ok(density)
     }
@@ -99,8 +74,8 @@ impl<'w> Density<'w> {
         row_lm
     }
 
-    /// Integrals over theta, from the row's near edge over a width s, of sin(theta) times the linear function that is 1 at
-    /// one of the two nodes of the row and 0 at the other.
+    /// Integrals over theta, from the row's near edge over a width s, of sin(theta) times the linear function
+    /// that is 1 at one of the two nodes of the row and 0 at the other.
     fn sine_weights(&self, row: usize, s: f64) -> [f64; 2] {
         let (theta, width) = (self.polar_rad[row], self.row_width(row));
         let mut weights = [0.0; 2];
@@ -145,8 +120,10 @@ impl<'w> Density<'w> {
         Some(row * self.columns() + interval(&self.azimuth_rad, phi)?)
     }
 
-    /// The distribution functions at a direction inside this cell, which is one of positive mass.
-    pub fn place(&self, cell: usize, theta: f64, phi: f64) -> Place {
+    /// Distribution functions at a direction inside this cell, which is one of positive mass: of theta, of
+    /// phi given theta, of theta given its row, of phi given theta and its column. Each is uniform on [0, 1]
+    /// under the density.
+    pub fn place(&self, cell: usize, theta: f64, phi: f64) -> [f64; 4] {
         let (row, column) = (cell / self.columns(), cell % self.columns());
         let s = (theta - self.polar_rad[row]).clamp(0.0, self.row_width(row));
         let nodes = at_nodes(s / self.row_width(row));
@@ -161,18 +138,18 @@ impl<'w> Density<'w> {
         let weights = self.sine_weights(row, s);
         let (below_lm, row_lm) = (self.below_lm[row], self.below_lm[row + 1] - self.below_lm[row]);
         let to_theta_lm = weights[0] * whole[0] + weights[1] * whole[1];
-        // On an edge of the table where the candela is zero nothing is left to divide by; samples are there by rounding
-        // only.
+        // On an edge of the table where the candela is zero nothing is left to divide by; samples are there
+        // by rounding only.
         let fraction = |part: f64, whole: f64| {
             let ratio = part / whole;
             if ratio.is_finite() { ratio.clamp(0.0, 1.0) } else { 0.5 }
         };
-        Place {
-            theta: fraction(below_lm + to_theta_lm, self.total_lm()),
-            phi: fraction(near + part, all),
-            theta_in_row: fraction(to_theta_lm, row_lm),
-            phi_in_column: fraction(part, far - near),
-        }
+        [
+            fraction(below_lm + to_theta_lm, self.total_lm()),
+            fraction(near + part, all),
+            fraction(to_theta_lm, row_lm),
+            fraction(part, far - near),
+        ]
     }
 
     fn row_width(&self, row: usize) -> f64 {
@@ -182,13 +159,6 @@ impl<'w> Density<'w> {
     fn column_width(&self, column: usize) -> f64 {
         self.azimuth_rad[column + 1] - self.azimuth_rad[column]
     }
-}
-
-/// The values at the fraction t of an interval of the two linear functions that are 1 at one of [`TWO_POINT`] and 0 at
-/// the other.
-fn at_nodes(t: f64) -> [f64; 2] {
-    let [near, far] = TWO_POINT;
-    [(far - t) / (far - near), (t - near) / (far - near)]
 }
 
 /// The interval between edges that holds x.
@@ -234,8 +204,8 @@ mod tests {
         }
         for (theta, phi) in [(0.1f64, 0.2), (0.53, 6.0), (1.7, 1.0), (3.1, 3.0), (PI, 2.0 * PI)] {
             let place = density.place(density.cell(theta, phi).unwrap(), theta, phi);
-            assert!((place.theta - 0.5 * (1.0 - theta.cos())).abs() < 1e-14);
-            assert!((place.phi - phi / (2.0 * PI)).abs() < 1e-14);
+            assert!((place[0] - 0.5 * (1.0 - theta.cos())).abs() < 1e-14);
+            assert!((place[1] - phi / (2.0 * PI)).abs() < 1e-14);
         }
     }
 
@@ -248,9 +218,9 @@ mod tests {
         for (theta, phi) in [(0.3f64, 5.0), (1.0, 0.4), (1.5, 2.0)] {
             let place = density.place(0, theta, phi);
             let exact = theta.sin() - theta * theta.cos();
-            assert!((place.theta - exact).abs() < 1e-14, "{place:?} {exact}");
-            assert!((place.phi - (phi / (2.0 * PI)).powi(2)).abs() < 1e-14);
-            assert_eq!((place.theta, place.phi), (place.theta_in_row, place.phi_in_column));
+            assert!((place[0] - exact).abs() < 1e-14, "{place:?} {exact}");
+            assert!((place[1] - (phi / (2.0 * PI)).powi(2)).abs() < 1e-14);
+            assert_eq!(place[..2], place[2..]);
         }
     }
 
@@ -277,11 +247,9 @@ mod tests {
         assert_eq!(at(80.0, 360.0), Some(3));
         assert_eq!((at(9.999_999, 0.0), at(80.000_001, 0.0), at(15.0, -1e-9)), (None, None, None));
         assert_eq!((density.cell(f64::NAN, 0.0), density.cell(0.2, f64::NAN)), (None, None));
-    }
-
-    #[test]
-    fn dark_tables_are_refused() {
-        let dark = web(PhotometricType::C, &[0.0, 90.0], &[0.0], |_, _| 0.0);
-        assert!(Density::new(&dark).is_err());
+        // Dark tables, and those of a single angle, are refused.
+        for v in [&[0.0, 90.0][..], &[90.0]] {
+            assert!(Density::new(&web(PhotometricType::C, v, &[0.0], |_, _| 0.0)).is_err());
+        }
     }
 }

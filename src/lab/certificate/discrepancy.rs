@@ -4,11 +4,11 @@
 //!
 //! T^2 = 1/9 - 1/(2 N) sum_i (1 - x_i^2)(1 - y_i^2) + 1/N^2 sum_ij (1 - max(x_i, x_j))(1 - max(y_i, y_j)).
 //!
-//! The double sum is taken in N log N steps: points in the order of x, the sums over the earlier ones from a Fenwick tree
-//! over the ranks of y.
+//! The double sum is taken in N log N steps: points in the order of x, the sums over the earlier ones from a
+//! Fenwick tree over the ranks of y.
 //!
-//! Of N random points N T^2 has the mean 5/36 exactly, and converges to the integral of a squared Gaussian process with
-//! covariance min(x, x') min(y, y') - x x' y y' ([`random_tail`]).
+//! Of N random points N T^2 has the mean 5/36 exactly, and converges to the integral of a squared Gaussian
+//! process with covariance min(x, x') min(y, y') - x x' y y' ([`random_tail`]).
 
 use std::f64::consts::PI;
 
@@ -29,7 +29,7 @@ pub fn squared_l2_star(points: &mut [[f64; 2]]) -> f64 {
         rank[*point as usize] = at as u32;
     }
     let (mut single, mut pairs) = (Sum::default(), Sum::default());
-    let mut earlier = Fenwick::new(n);
+    let mut earlier = Fenwick(vec![(0, Sum::default()); n + 1]);
     let mut above = Sum::default();
     for (i, [x, y]) in points.iter().enumerate() {
         let (count, sum) = earlier.below(rank[i]);
@@ -41,7 +41,8 @@ pub fn squared_l2_star(points: &mut [[f64; 2]]) -> f64 {
         above.add(1.0 - y);
     }
     let n = n as f64;
-    // T^2 of a good set is far below the three terms: their sums are compensated, and what rounding leaves below 0 is 0.
+    // T^2 of a good set is far below the three terms: their sums are compensated, and what rounding leaves
+    // below 0 is 0.
     (1.0 / 9.0 - single.value() / (2.0 * n) + pairs.value() / (n * n)).max(0.0)
 }
 
@@ -65,20 +66,14 @@ impl Sum {
 }
 
 /// Counts and sums over ranks below a given one, in log N steps (Fenwick 1994).
-struct Fenwick {
-    nodes: Vec<(u32, Sum)>,
-}
+struct Fenwick(Vec<(u32, Sum)>);
 
 impl Fenwick {
-    fn new(n: usize) -> Self {
-        Self { nodes: vec![(0, Sum::default()); n + 1] }
-    }
-
     fn insert(&mut self, rank: u32, value: f64) {
         let mut at = rank as usize + 1;
-        while at < self.nodes.len() {
-            self.nodes[at].0 += 1;
-            self.nodes[at].1.add(value);
+        while at < self.0.len() {
+            self.0[at].0 += 1;
+            self.0[at].1.add(value);
             at += at & at.wrapping_neg();
         }
     }
@@ -86,23 +81,23 @@ impl Fenwick {
     fn below(&self, rank: u32) -> (u32, f64) {
         let (mut count, mut sum, mut at) = (0, 0.0, rank as usize);
         while at > 0 {
-            count += self.nodes[at].0;
-            sum += self.nodes[at].1.value();
+            count += self.0[at].0;
+            sum += self.0[at].1.value();
             at -= at & at.wrapping_neg();
         }
         (count, sum)
     }
 }
 
-/// Eigenvalues of min(x, x') on the unit interval that are kept; what their products leave of the mean, 5 %, is taken as
-/// a constant, for its variance is below 1e-4 of the whole.
+/// Eigenvalues of min(x, x') on the unit interval that are kept; what their products leave of the mean, 5 %,
+/// is taken as a constant, for its variance is below 1e-4 of the whole.
 const EIGENVALUES: usize = 16;
 
 /// P(N T^2 > w) for many random points.
 ///
 /// With l_j = 1 / ((j - 1/2)^2 pi^2) and L_jk = l_j l_k the operator of the covariance is diag(L) - v v^T,
-/// v_jk = +-2 L_jk, and the characteristic function of the limit is det(1 - 2 i t (diag(L) - v v^T))^(-1/2); it is
-/// inverted by the sum of Davies (1973).
+/// v_jk = +-2 L_jk, and the characteristic function of the limit is det(1 - 2 i t (diag(L) - v v^T))^(-1/2);
+/// it is inverted by the sum of Davies (1973).
 pub fn random_tail(w: f64) -> f64 {
     let axis: Vec<f64> = (0..EIGENVALUES).map(|j| 1.0 / ((j as f64 + 0.5) * PI).powi(2)).collect();
     let products: Vec<f64> = axis.iter().flat_map(|a| axis.iter().map(move |b| a * b)).collect();

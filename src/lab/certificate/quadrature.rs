@@ -1,9 +1,10 @@
-//! Gauss-Legendre quadrature: the certificate's own route to an integral, by values and not by antiderivatives.
+//! Gauss-Legendre quadrature: the certificate's own route to an integral, by values and not by
+//! antiderivatives.
 
 use std::f64::consts::PI;
 
-/// Nodes of the rule along a polar angle. sin(theta) times a linear function over half a turn, the widest row there can
-/// be, is integrated to 1e-15 of its value.
+/// Nodes of the rule along a polar angle. sin(theta) times a linear function over half a turn, the widest row
+/// there can be, is integrated to 1e-15 of its value.
 pub const NODES: usize = 12;
 
 /// The Gauss-Legendre rule of [`NODES`] nodes on [0, 1]: exact for polynomials of degree 23.
@@ -19,7 +20,8 @@ impl Gauss {
         let (mut nodes, mut weights) = ([0.0; NODES], [0.0; NODES]);
         for (i, (node, weight)) in nodes.iter_mut().zip(&mut weights).enumerate() {
             let mut x = -libm::cos(PI * (i as f64 + 0.75) / (NODES as f64 + 0.5));
-            // Quadratic convergence from an error below 1e-3: four steps reach the last bit, two more cost nothing.
+            // Quadratic convergence from an error below 1e-3: four steps reach the last bit, two more cost
+            // nothing.
             for _ in 0..6 {
                 let (value, slope) = legendre(x);
                 x -= value / slope;
@@ -38,12 +40,6 @@ impl Gauss {
     }
 }
 
-impl Default for Gauss {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// The Legendre polynomial of degree [`NODES`] and its derivative, -1 < x < 1.
 fn legendre(x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
@@ -56,6 +52,13 @@ fn legendre(x: f64) -> (f64, f64) {
 
 /// The two nodes of the two-point rule on [0, 1], 1/2 -+ 1/sqrt(12); their weights are 1/2. Exact for cubics.
 pub const TWO_POINT: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+/// The values at the fraction t of an interval of the two linear functions that are 1 at one of [`TWO_POINT`]
+/// and 0 at the other.
+pub fn at_nodes(t: f64) -> [f64; 2] {
+    let [near, far] = TWO_POINT;
+    [(far - t) / (far - near), (t - near) / (far - near)]
+}
 
 #[cfg(test)]
 mod tests {

@@ -8,8 +8,9 @@ use crate::error::Result;
 use crate::lab::certificate::{Draw, PointKind};
 use crate::run::Algorithm;
 use crate::run::tracer::{PointSet, UsePoints};
+use crate::sample::cell::GridPoint;
 use crate::sample::coordinates::{Coordinates, Purpose};
-use crate::sample::grid::{Grid, GridPoint};
+use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
 use crate::sequence::{Points, Sequence};
 
@@ -45,24 +46,18 @@ impl Effort {
     /// The sum with another one.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
-        Self {
-            time: self.time + other.time,
-            draws: self.draws + other.draws,
-            points: self.points + other.points,
-        }
+        let (draws, points) = (self.draws + other.draws, self.points + other.points);
+        Self { time: self.time + other.time, draws, points }
     }
 }
 
 /// What draws of this sequence are to be compared with.
 pub fn made_from(sequence: Sequence) -> PointKind {
-    match sequence {
-        Sequence::Independent => PointKind::Random,
-        _ => PointKind::LowDiscrepancy,
-    }
+    if sequence == Sequence::Independent { PointKind::Random } else { PointKind::LowDiscrepancy }
 }
 
-/// Samples `number` directions of a table with one randomisation of an algorithm, and hands them over block by block;
-/// `sink` says whether to go on.
+/// Samples `number` directions of a table with one randomisation of an algorithm, and hands them over block
+/// by block; `sink` says whether to go on.
 ///
 /// # Errors
 /// A sequence that cannot have this many points or, where rejection skips points, more.
@@ -103,12 +98,9 @@ impl<S: FnMut(&[Sampled]) -> bool> UsePoints for Run<'_, S> {
                 effort.points += 1;
                 let u = coordinates.draw_reusable(Purpose::Emission);
                 if let Some(point) = self.grid.draw(self.sampling, u, &mut coordinates) {
-                    let GridPoint { theta, phi, direction, .. } = point;
+                    let GridPoint { theta: theta_rad, phi: phi_rad, direction, .. } = point;
                     let coordinates = coordinates.drawn();
-                    block.push(Sampled {
-                        draw: Draw { theta_rad: theta, phi_rad: phi, coordinates },
-                        direction,
-                    });
+                    block.push(Sampled { draw: Draw { theta_rad, phi_rad, coordinates }, direction });
                 }
             }
             effort.time += started.elapsed();

@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use statrs::function::beta::checked_beta_reg;
 use statrs::function::gamma::checked_gamma_ur;
 
-/// P(X >= statistic) for chi-square with `degrees` degrees of freedom: Q(degrees / 2, statistic / 2); 1 without any.
+/// P(X >= statistic) for chi-square with `degrees` degrees of freedom: Q(degrees / 2, statistic / 2); 1
+/// without any.
 pub fn chi_square_tail(statistic: f64, degrees: usize) -> f64 {
     if degrees == 0 || statistic <= 0.0 {
         return 1.0;
@@ -14,8 +15,8 @@ pub fn chi_square_tail(statistic: f64, degrees: usize) -> f64 {
     checked_gamma_ur(0.5 * degrees as f64, 0.5 * statistic).unwrap_or(0.0)
 }
 
-/// P(K > lambda) of the Kolmogorov distribution: 2 sum (-1)^(k-1) exp(-2 k^2 lambda^2), and its theta-function twin
-/// where that series converges slowly.
+/// P(K > lambda) of the Kolmogorov distribution: 2 sum (-1)^(k-1) exp(-2 k^2 lambda^2), and its
+/// theta-function twin where that series converges slowly.
 pub fn kolmogorov_tail(lambda: f64) -> f64 {
     if lambda <= 0.0 {
         return 1.0;
@@ -33,16 +34,16 @@ pub fn kolmogorov_tail(lambda: f64) -> f64 {
     }
 }
 
-/// P(D > distance) of the Kolmogorov-Smirnov distance of n values: the asymptotic law with Stephens' (1970) correction
-/// for finite n.
+/// P(D > distance) of the Kolmogorov-Smirnov distance of n values: the asymptotic law with Stephens' (1970)
+/// correction for finite n.
 pub fn kolmogorov_smirnov_tail(distance: f64, n: u64) -> f64 {
     let root = libm::sqrt(n as f64);
     kolmogorov_tail(distance * (root + 0.12 + 0.11 / root))
 }
 
-/// Chance, two-sided, of a count as far from n p as this one for a binomial of n trials, by the signed root of its
-/// deviance, sqrt(2 sum k ln(k / expected)), as a standard normal, the count moved by 1/2 towards the expectation.
-/// To a few per cent where n p >= 10, too large (never alarming) where it is small.
+/// Chance, two-sided, of a count as far from n p as this one for a binomial of n trials, by the signed root
+/// of its deviance, sqrt(2 sum k ln(k / expected)), as a standard normal, the count moved by 1/2 towards the
+/// expectation. To a few per cent where n p >= 10, too large (never alarming) where it is small.
 pub fn binomial_tails(count: u64, n: u64, p: f64) -> f64 {
     let (count, n) = (count as f64, n as f64);
     let expected = n * p;
@@ -64,12 +65,14 @@ pub fn normal_tails(z: f64) -> f64 {
     libm::erfc(z.abs() * FRAC_1_SQRT_2)
 }
 
-/// P(|T| > t) of Student's t with `degrees` degrees of freedom: I_x(degrees / 2, 1 / 2), x = degrees / (degrees + t^2).
+/// P(|T| > t) of Student's t with `degrees` degrees of freedom: I_x(degrees / 2, 1 / 2), x = degrees /
+/// (degrees + t^2).
 pub fn student_tails(t: f64, degrees: f64) -> f64 {
     checked_beta_reg(0.5 * degrees, 0.5, degrees / (degrees + t * t)).unwrap_or(0.0)
 }
 
-/// The chance that the smallest of `tests` independent p-values is as small as this one, 1 - (1 - p)^tests (Sidak 1967).
+/// The chance that the smallest of `tests` independent p-values is as small as this one, 1 - (1 - p)^tests
+/// (Sidak 1967).
 pub fn sidak(p_value: f64, tests: usize) -> f64 {
     -libm::expm1(tests as f64 * libm::log1p(-p_value.min(1.0)))
 }

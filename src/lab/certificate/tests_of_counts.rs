@@ -3,7 +3,8 @@
 use crate::lab::certificate::statistics::{binomial_tails, chi_square_tail, sidak, student_tails};
 use crate::lab::certificate::{Test, TestName};
 
-/// Expected counts below which the chi-square approximation of a cell is not used: it is pooled with its neighbours.
+/// Expected counts below which the chi-square approximation of a cell is not used: it is pooled with its
+/// neighbours.
 const LEAST_EXPECTED: f64 = 5.0;
 
 /// A statistic with its chance.
@@ -17,13 +18,14 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    pub(crate) fn test(&self, name: TestName, what: &'static str) -> Test {
-        Test::new(name, what, self.statistic, self.degrees, self.p_value)
+    pub(crate) fn test(&self, name: TestName) -> Test {
+        Test::new(name, self.statistic, self.degrees, self.p_value)
     }
 }
 
-/// Chi-square of counts against probabilities: neighbouring cells are pooled, row by row, until they expect at least five;
-/// what is left at the end joins the last pool. Cells of probability zero are left out: they are judged apart.
+/// Chi-square of counts against probabilities: neighbouring cells are pooled, row by row, until they expect
+/// at least five; what is left at the end joins the last pool. Cells of probability zero are left out: they
+/// are judged apart.
 pub(crate) fn chi_square(counts: &[u64], probabilities: &[f64]) -> Found {
     let cells = || counts.iter().zip(probabilities).filter(|(_, p)| **p > 0.0);
     let draws: u64 = cells().map(|(n, _)| n).sum();
@@ -54,8 +56,8 @@ pub(crate) fn chi_square(counts: &[u64], probabilities: &[f64]) -> Found {
     }
 }
 
-/// The count that is least likely for its binomial, corrected for the number of cells (Sidak). One wrong cell shows here
-/// where chi-square spreads it over all.
+/// The count that is least likely for its binomial, corrected for the number of cells (Sidak). One wrong cell
+/// shows here where chi-square spreads it over all.
 pub(crate) fn largest_cell(counts: &[u64], probabilities: &[f64]) -> Found {
     let draws: u64 = counts.iter().sum();
     let (mut least, mut deviation, mut cells) = (1.0, 0.0, 0);
@@ -95,12 +97,13 @@ impl CellMeans {
         self.draws += draws;
     }
 
-    /// Student's t of the cell whose mean is least likely, corrected for the number of cells (Sidak); nothing from fewer
-    /// than two randomisations.
+    /// Student's t of the cell whose mean is least likely, corrected for the number of cells (Sidak); nothing
+    /// from fewer than two randomisations.
     ///
-    /// Each randomisation is an independent estimate of n p without bias, whatever the points are, so the spread between
-    /// them is the null. It has a floor: a whole number with mean n p has a variance of at least f (1 - f), f the fraction
-    /// of n p. Without it a cell whose stratified counts happen to agree would have no spread at all.
+    /// Each randomisation is an independent estimate of n p without bias, whatever the points are, so the
+    /// spread between them is the null. It has a floor: a whole number with mean n p has a variance of at
+    /// least f (1 - f), f the fraction of n p. Without it a cell whose stratified counts happen to agree
+    /// would have no spread at all.
     pub(crate) fn judge(&self, probabilities: &[f64]) -> Option<Found> {
         if self.replicates < 2 {
             return None;

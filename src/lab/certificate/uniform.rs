@@ -3,8 +3,9 @@
 use crate::lab::certificate::statistics::kolmogorov_smirnov_tail;
 use crate::lab::certificate::{Test, TestName};
 
-/// Bins of [0, 1]: the distance is measured at their edges. That is at most the distance of the test, so its p-value is an
-/// upper bound; of n values it is short by some 1/sqrt(bins n), a five-hundredth of the distances that matter.
+/// Bins of [0, 1]: the distance is measured at their edges. That is at most the distance of the test, so its
+/// p-value is an upper bound; of n values it is short by some 1/sqrt(bins n), a five-hundredth of the
+/// distances that matter.
 const BINS: usize = 1 << 18;
 
 /// Counts of values in bins of [0, 1].
@@ -38,12 +39,12 @@ impl Uniformity {
         largest
     }
 
-    pub(crate) fn test(&self, name: TestName, what: &'static str) -> Test {
+    pub(crate) fn test(&self, name: TestName) -> Test {
         if self.values == 0 {
-            return Test::new(name, what, 0.0, None, 1.0);
+            return Test::new(name, 0.0, None, 1.0);
         }
         let distance = self.distance();
-        Test::new(name, what, distance, None, kolmogorov_smirnov_tail(distance, self.values))
+        Test::new(name, distance, None, kolmogorov_smirnov_tail(distance, self.values))
     }
 }
 

@@ -7,14 +7,15 @@ use std::sync::atomic::AtomicBool;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::lab::study::cells::areas_m2;
 use crate::lab::study::runs::Clock;
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
-use crate::sequence::{Points, Sequence};
+use crate::sequence::Sequence;
 use crate::surface::Fixed;
 use crate::tally::WeightedReceivers;
-use crate::transport::parallel::{How, Traced, trace_range};
+use crate::transport::parallel::{How, trace_range};
 
 /// What to measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,8 +44,8 @@ pub struct Measurement {
     pub seed: u64,
     /// Photons.
     pub photons: u64,
-    /// Mean radiance arriving in each cell of the scene's receivers, one receiver after another, by channel: flux / area
-    /// / pi, in cd/m2 of a white of which all channels are equal.
+    /// Mean radiance arriving in each cell of the scene's receivers, one receiver after another, by channel:
+    /// flux / area / pi, in cd/m2 of a white of which all channels are equal.
     pub radiance: Vec<[f64; 3]>,
     /// Photons that left the scene.
     pub escaped: u64,
@@ -62,10 +63,7 @@ impl Measurement {
 }
 
 /// The reflections M that a scene names.
-///
-/// # Errors
-/// A scene without `[compare]`.
-pub(crate) fn reflections(scene: &Scene) -> Result<u32> {
+pub(super) fn reflections(scene: &Scene) -> Result<u32> {
     scene.compared_reflections.ok_or_else(|| {
         Diagnostic::new(
             Kind::Missing,
@@ -75,13 +73,8 @@ pub(crate) fn reflections(scene: &Scene) -> Result<u32> {
     })
 }
 
-/// Areas of the cells of all receivers, m2.
-pub(crate) fn areas_m2(scene: &Scene) -> Vec<f64> {
-    scene.receivers.iter().flat_map(|r| (0..r.cells.len()).map(|cell| r.area_m2(cell))).collect()
-}
-
-/// Traces the photons of a task through exactly M reflections each; `progress` is told the number of photons after each
-/// batch. The same numbers, time apart, with any number of threads.
+/// Traces the photons of a task through exactly M reflections each; `progress` is told the number of photons
+/// after each batch. The same numbers, time apart, with any number of threads.
 ///
 /// # Errors
 /// A scene without `[compare]`; more photons than [`WeightedReceivers`] has room for; an interrupt.
@@ -93,50 +86,34 @@ pub fn measure(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Measurement> {
     let reflections = reflections(scene)?;
-    let set = PointSet { sequence: task.sequence, seed: task.seed, replicate: 0, number: task.photons };
-    let points = set.any()?;
-    let tally = WeightedReceivers::new(
-        &scene.geometry,
-        &scene.receivers,
-        task.photons,
-        arrivals(scene, reflections),
-    )?;
+    let &Task { sequence, seed, photons } = task;
+    let points = PointSet { sequence, seed, replicate: 0, number: photons }.any()?;
+    let arrivals = arrivals(scene, reflections);
+    let tally = WeightedReceivers::new(&scene.geometry, &scene.receivers, photons, arrivals)?;
     let started = clock()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
-    let traced = trace(scene, &points, task, reflections, how, &tally);
+    let carried = Fixed::white(reflections);
+    let traced = trace_range(scene, &scene.emitters, &points, 0..photons, carried, how, || tally.sink());
     if !traced.complete {
         let found = format!("an interrupt before {task} were traced");
         return Err(Diagnostic::new(Kind::Interrupted, found, "all of them for a result"));
     }
-    let luminous = scene.emitters.flux_lm() / task.photons as f64 / PI;
+    let luminous = scene.emitters.flux_lm() / photons as f64 / PI;
+    let radiance = |(cell, area): (usize, &f64)| tally.weight(cell).map(|w| luminous * w / area);
     Ok(Measurement {
-        sequence: task.sequence.name().to_string(),
-        seed: task.seed,
-        photons: task.photons,
-        radiance: areas_m2(scene)
-            .iter()
-            .enumerate()
-            .map(|(cell, area)| tally.weight(cell).map(|w| luminous * w / area))
-            .collect(),
+        sequence: sequence.name().to_string(),
+        seed,
+        photons,
+        radiance: areas_m2(&scene.receivers).iter().enumerate().map(radiance).collect(),
         escaped: traced.ledger.escaped,
         coordinates: (traced.census.dimension_mean(), traced.census.dimension_max),
         trace_s: clock()?.saturating_sub(started).as_secs_f64(),
     })
 }
 
-fn trace<P: Points>(
-    scene: &Scene,
-    points: &P,
-    task: &Task,
-    reflections: u32,
-    how: How<'_>,
-    tally: &WeightedReceivers<'_>,
-) -> Traced {
-    trace_range(scene, points, 0..task.photons, Fixed::white(reflections), how, || tally.sink())
-}
-
-/// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics as often as
-/// roulette lets it. Photons of coloured light count as often as their strongest channel outweighs white's.
+/// Most arrivals of a photon that can count in one cell: M + 1, but beyond those a photon passes dielectrics
+/// as often as roulette lets it. Photons of coloured light count as often as their strongest channel
+/// outweighs white's.
 fn arrivals(scene: &Scene, reflections: u32) -> u32 {
     let passes = scene.receivers.iter().any(|r| scene.material(r.surface).is_transparent());
     let arrivals = if passes { crate::transport::walk::MAX_EVENTS } else { reflections + 1 };

@@ -1,22 +1,22 @@
-//! The experiment of S. Heinrich and A. Keller, "Quasi-Monte Carlo Methods in Computer Graphics, Part II: The Radiance
-//! Equation" (Kaiserslautern, 1994), section 5: how well do point sequences find the light that arrives at every triangle
-//! of a closed diffuse scene after at most M reflections?
+//! The experiment of S. Heinrich and A. Keller, "Quasi-Monte Carlo Methods in Computer Graphics, Part II: The
+//! Radiance Equation" (Kaiserslautern, 1994), section 5: how well do point sequences find the light that
+//! arrives at every triangle of a closed diffuse scene after at most M reflections?
 //!
-//! Every photon carries a weight per channel through exactly M reflections, without roulette, on 2 M + 4 coordinates; at each
-//! of its M + 1 arrivals the weight is added to the triangle ([`measure()`]). A number of photons is compared with a larger one
-//! of the same sequence, and the largest of the sequences with each other ([`tables`]), in the paper's norm ([`deviation()`]).
+//! Every photon carries a weight per channel through exactly M reflections, without roulette, on 2 M + 4
+//! coordinates; at each of its M + 1 arrivals the weight is added to the triangle ([`measure()`]). A number
+//! of photons is compared with a larger one of the same sequence, and the largest of the sequences with each
+//! other ([`tables`]), in the paper's norm.
 
-pub mod deviation;
 pub mod measure;
 pub mod tables;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::lab::study::cells::areas_m2;
 use crate::scene::Scene;
 use crate::sequence::Sequence;
 
-pub use deviation::deviation;
-pub use measure::{Measurement, Task, measure};
-pub use tables::{Between, Deviation, Row, Value};
+pub use measure::{Measurement, Task};
+pub use tables::{Row, Value};
 
 /// The sequences that are compared: the paper's four, and Sobol'.
 pub const SEQUENCES: [Sequence; 5] =
@@ -25,32 +25,43 @@ pub const SEQUENCES: [Sequence; 5] =
 /// What is measured.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
-    /// Numbers of photons, rising, at least two.
-    pub ladder: Vec<u64>,
-    /// Seeds of the random sequence, at least one; the others have none.
-    pub seeds: Vec<u64>,
+    pub(crate) ladder: Vec<u64>,
+    pub(crate) seeds: Vec<u64>,
 }
 
 impl Options {
-    /// 10^4, 10^5 and 10^6 photons, in full also 10^7, as in the paper; four seeds.
-    pub fn new(full: bool) -> Self {
-        let mut ladder = vec![10_000, 100_000, 1_000_000];
-        if full {
-            ladder.push(10_000_000);
+    /// Numbers of photons, rising, at least two; seeds of the random sequence, at least one (the others have
+    /// none).
+    ///
+    /// # Errors
+    /// Numbers that do not rise, fewer than two; no seed.
+    pub fn new(ladder: Vec<u64>, seeds: Vec<u64>) -> Result<Self> {
+        if ladder.len() < 2 || !ladder.is_sorted_by(|a, b| a < b) || seeds.is_empty() {
+            return Err(Diagnostic::new(
+                Kind::Range,
+                format!("photons {ladder:?} and seeds {seeds:?}"),
+                "two or more rising numbers of photons, and a seed",
+            ));
         }
-        Self { ladder, seeds: vec![1, 2, 3, 4] }
+        Ok(Self { ladder, seeds })
+    }
+
+    /// 10^4, 10^5 and 10^6 photons, in full also 10^7, as in the paper.
+    pub fn paper_ladder(full: bool) -> Vec<u64> {
+        (4..if full { 8 } else { 7 }).map(|power| 10u64.pow(power)).collect()
+    }
+
+    fn seeds_of(&self, sequence: Sequence) -> &[u64] {
+        if sequence.is_randomised() { &self.seeds } else { &[0] }
     }
 
     /// Everything that is to be measured, the quickest first.
     pub fn tasks(&self) -> Vec<Task> {
-        let mut tasks = Vec::new();
-        for &photons in &self.ladder {
-            for sequence in SEQUENCES {
-                let seeds = if sequence.is_randomised() { &self.seeds[..] } else { &[0] };
-                tasks.extend(seeds.iter().map(|&seed| Task { sequence, seed, photons }));
-            }
-        }
-        tasks
+        let of = |photons, sequence| {
+            self.seeds_of(sequence).iter().map(move |&seed| Task { sequence, seed, photons })
+        };
+        let of_all = |&photons: &u64| SEQUENCES.into_iter().flat_map(move |sequence| of(photons, sequence));
+        self.ladder.iter().flat_map(of_all).collect()
     }
 
     /// Photons of all tasks.
@@ -80,21 +91,12 @@ pub struct RoomStudy {
 }
 
 impl RoomStudy {
-    /// The study of these measurements, in any order.
+    /// The study of these measurements ([`measure()`] of each of [`Options::tasks`]), in any order.
     ///
     /// # Errors
-    /// A scene without `[compare]`; options without two numbers of photons or a seed; a measurement of [`Options::tasks`] that
-    /// is not there or has another number of cells.
+    /// A scene without `[compare]`; a task without a measurement, or with one of another number of cells.
     pub fn new(scene: &Scene, options: &Options, measurements: &[Measurement]) -> Result<Self> {
-        let rising = options.ladder.windows(2).all(|w| w[0] < w[1]);
-        if options.ladder.len() < 2 || !rising || options.seeds.is_empty() {
-            return Err(Diagnostic::new(
-                Kind::Range,
-                format!("photons {:?} and seeds {:?}", options.ladder, options.seeds),
-                "two or more rising numbers of photons, and a seed",
-            ));
-        }
-        let areas_m2 = measure::areas_m2(scene);
+        let areas_m2 = areas_m2(&scene.receivers);
         let find = |task: Task| {
             let found = measurements.iter().find(|m| m.is_of(&task) && m.radiance.len() == areas_m2.len());
             found.cloned().ok_or_else(|| {
@@ -104,9 +106,8 @@ impl RoomStudy {
         let ladder = |sequence, seed| -> Result<Ladder> {
             options.ladder.iter().map(|&photons| find(Task { sequence, seed, photons })).collect()
         };
-        let of_sequence = |sequence: Sequence| -> Result<Vec<Ladder>> {
-            let seeds = if sequence.is_randomised() { &options.seeds[..] } else { &[0] };
-            seeds.iter().map(|&seed| ladder(sequence, seed)).collect()
+        let of_sequence = |sequence: Sequence| {
+            options.seeds_of(sequence).iter().map(|&seed| ladder(sequence, seed)).collect::<Result<_>>()
         };
         Ok(Self {
             scene_name: scene.identity.name.clone(),

@@ -1,19 +1,17 @@
 //! What follows from the measurements: the paper's tables, and errors against a reference.
 //!
-//! The reference of a sequence is the mean of the largest measurements (the masters) of the *other* low-discrepancy
-//! sequences, so that nothing is compared with itself. Their spread tells its own error: an indication, not a statistical
-//! one, because none of them is random.
+//! The reference of a sequence is the mean of the largest measurements (the masters) of the *other*
+//! low-discrepancy sequences, so that nothing is compared with itself. Their spread tells its own error: an
+//! indication, not a statistical one, because none of them is random.
 
 use std::f64::consts::PI;
 
-use crate::lab::room::deviation::deviation;
-use crate::lab::room::{RoomStudy, SEQUENCES};
 use crate::lab::study::fit::{Law, Level};
-use crate::lab::study::norms::{Errors, nrms_of_mean};
+use crate::lab::study::norms::{Errors, mean_and_variance, moments, nrms_of_mean};
+use crate::lab::study::table::REFERENCE_MARGIN;
 use crate::surface::reflectance::luminance;
 
-/// An error closer to the reference's own than this factor is limited by it (METHOD 6).
-const LIMITED: f64 = 3.0;
+use super::{Ladder, Measurement, RoomStudy, SEQUENCES};
 
 /// A mean over seeds and their standard deviation; `None` for a single one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,33 +24,19 @@ pub struct Value {
 
 impl Value {
     fn of(values: &[f64]) -> Self {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
-        Self { mean, spread: (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt()) }
+        let (mean, variance) = mean_and_variance(values);
+        Self { mean, spread: variance.map(f64::sqrt) }
     }
 }
 
-/// An entry of the paper's tables 2 to 5: two numbers of photons of one sequence.
+/// An entry of the paper's tables 2 to 5 (two numbers of photons of one sequence) or 6 (two sequences with
+/// the largest number of photons).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
-    /// Index into [`SEQUENCES`].
-    pub sequence: usize,
-    /// The fewer photons.
-    pub few: u64,
-    /// The more photons: the better estimate.
-    pub many: u64,
-    /// The deviation; of a random sequence over its seeds.
-    pub value: Value,
-}
-
-/// An entry of the paper's table 6: two sequences with the largest number of photons.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Between {
-    /// Index into [`SEQUENCES`].
-    pub first: usize,
-    /// The same; taken for the better estimate.
-    pub second: usize,
+    /// Indices into [`SEQUENCES`].
+    pub sequences: [usize; 2],
+    /// Photons; the second is taken for the better estimate.
+    pub photons: [u64; 2],
     /// The deviation; where the first is random over its seeds.
     pub value: Value,
 }
@@ -86,50 +70,45 @@ impl Row {
     /// Whether the reference is not good enough for this error.
     pub fn is_limited(&self) -> bool {
         // An unknown error of the reference limits everything.
-        self.reference_nrms.is_nan() || self.errors.nrms < LIMITED * self.reference_nrms
+        self.reference_nrms.is_nan() || self.errors.nrms < REFERENCE_MARGIN * self.reference_nrms
     }
 }
 
 impl RoomStudy {
     /// The deviation of two numbers of photons, by their places in the ladder, of a sequence.
     pub fn deviation(&self, sequence: usize, few: usize, many: usize) -> Value {
-        let of = |ladder: &crate::lab::room::Ladder| {
-            deviation(&self.areas_m2, &ladder[few].radiance, &ladder[many].radiance)
-        };
+        let of = |ladder: &Ladder| self.distance(&ladder[few], &ladder[many]);
         Value::of(&self.runs(sequence).iter().map(of).collect::<Vec<_>>())
+    }
+
+    fn distance(&self, estimate: &Measurement, better: &Measurement) -> f64 {
+        deviation(&self.areas_m2, &estimate.radiance, &better.radiance)
     }
 
     /// Every pair of numbers of photons of every sequence.
     pub fn deviations(&self) -> Vec<Deviation> {
         let ladder = &self.options.ladder;
-        let mut all = Vec::new();
-        for sequence in 0..SEQUENCES.len() {
-            for many in 1..ladder.len() {
-                for few in 0..many {
-                    let value = self.deviation(sequence, few, many);
-                    all.push(Deviation { sequence, few: ladder[few], many: ladder[many], value });
-                }
-            }
-        }
-        all
+        let of = |sequence: usize, few: usize, many: usize| Deviation {
+            sequences: [sequence; 2],
+            photons: [ladder[few], ladder[many]],
+            value: self.deviation(sequence, few, many),
+        };
+        let pairs = || (1..ladder.len()).flat_map(|many| (0..many).map(move |few| (few, many)));
+        (0..SEQUENCES.len()).flat_map(|s| pairs().map(move |(few, many)| of(s, few, many))).collect()
     }
 
     /// Every pair of sequences at the largest number of photons.
-    pub fn between(&self) -> Vec<Between> {
-        let master = self.options.ladder.len() - 1;
-        let mut all = Vec::new();
-        for first in 0..SEQUENCES.len() {
-            for second in first + 1..SEQUENCES.len() {
-                let mut values = Vec::new();
-                for a in self.runs(first) {
-                    for b in self.runs(second) {
-                        values.push(deviation(&self.areas_m2, &a[master].radiance, &b[master].radiance));
-                    }
-                }
-                all.push(Between { first, second, value: Value::of(&values) });
-            }
-        }
-        all
+    pub fn between(&self) -> Vec<Deviation> {
+        let (n, master) = (SEQUENCES.len(), self.options.ladder.len() - 1);
+        let photons = [self.options.ladder[master]; 2];
+        let of = |first: usize, second: usize| {
+            let pairs = self.runs(first).iter().flat_map(|a| self.runs(second).iter().map(move |b| (a, b)));
+            let values = pairs.map(|(a, b)| self.distance(&a[master], &b[master]));
+            let value = Value::of(&values.collect::<Vec<_>>());
+            Deviation { sequences: [first, second], photons, value }
+        };
+        let pairs = (0..n).flat_map(|first| (first + 1..n).map(move |second| (first, second)));
+        pairs.map(|(first, second)| of(first, second)).collect()
     }
 
     /// The deviation of the random sequence over that of another, with the last two numbers of photons. The
@@ -143,52 +122,38 @@ impl RoomStudy {
 
     /// Errors of every sequence and number of photons.
     pub fn rows(&self) -> Vec<Row> {
-        let mut rows: Vec<Row> = Vec::new();
-        let mut random_law = None;
-        let mut random_speed = f64::NAN;
-        for sequence in 0..SEQUENCES.len() {
-            let of_sequence = self.errors_of(sequence);
-            let law = law_of(&of_sequence);
-            let speed = self.photons_per_s(sequence);
-            if sequence == 0 {
-                (random_law, random_speed) = (law, speed);
-            }
-            for (level, mut row) in of_sequence.into_iter().enumerate() {
-                let random_nrms = if sequence == 0 { row.errors.nrms } else { rows[level].errors.nrms };
-                row.rate = law.map(|l| l.rate);
-                row.photons_per_s = speed;
-                row.ratio_equal_n = random_nrms / row.errors.nrms;
-                let photons = row.photons as f64 * random_speed / speed;
+        let levels = self.options.ladder.len();
+        let mut rows: Vec<Row> = (0..SEQUENCES.len()).flat_map(|s| self.errors_of(s)).collect();
+        let random = rows[..levels].to_vec();
+        let random_law = law_of(&random);
+        for of_sequence in rows.chunks_mut(levels) {
+            let rate = law_of(of_sequence).map(|law| law.rate);
+            for (row, random) in of_sequence.iter_mut().zip(&random) {
+                let photons = row.photons as f64 * random.photons_per_s / row.photons_per_s;
+                row.rate = rate;
+                row.ratio_equal_n = random.errors.nrms / row.errors.nrms;
                 row.ratio_equal_time = random_law.map(|l| l.error_at(photons).value / row.errors.nrms);
-                rows.push(row);
             }
         }
         rows
     }
 
-    /// Rows of a sequence without what is relative to the random one.
+    /// Rows of a sequence without a rate and ratios.
     fn errors_of(&self, sequence: usize) -> Vec<Row> {
-        let (reference, own) = self.reference(sequence);
+        let (reference, reference_nrms) = self.reference(sequence);
+        let photons_per_s = self.photons_per_s(sequence);
         let level = |level: usize| {
-            let errors: Vec<Errors> = self
-                .runs(sequence)
-                .iter()
-                .filter_map(|l| Errors::of(&illuminance(&l[level].radiance), &reference, &self.areas_m2).ok())
-                .collect();
-            let n = errors.len() as f64;
-            let rms = |f: fn(&Errors) -> f64| (errors.iter().map(|e| f(e) * f(e)).sum::<f64>() / n).sqrt();
+            let of = |l: &Ladder| Errors::of(&illuminance(&l[level]), &reference, &self.areas_m2).ok();
+            let seeds: Vec<Errors> = self.runs(sequence).iter().filter_map(of).collect();
+            let (errors, nrms_spread) = Errors::over_seeds(&seeds);
             let first = &self.runs(sequence)[0][level];
             Row {
                 sequence,
                 photons: first.photons,
-                errors: Errors {
-                    relative_rms: rms(|e| e.relative_rms),
-                    nrms: rms(|e| e.nrms),
-                    relative_l1: errors.iter().map(|e| e.relative_l1).sum::<f64>() / n,
-                },
-                nrms_spread: Value::of(&errors.iter().map(|e| e.nrms).collect::<Vec<_>>()).spread,
-                reference_nrms: own,
-                photons_per_s: f64::NAN,
+                errors,
+                nrms_spread,
+                reference_nrms,
+                photons_per_s,
                 coordinates: first.coordinates.0,
                 rate: None,
                 ratio_equal_n: f64::NAN,
@@ -198,40 +163,66 @@ impl RoomStudy {
         (0..self.options.ladder.len()).map(level).collect()
     }
 
-    /// Mean illuminance of the masters of the other low-discrepancy sequences, and its own nRMS from their spread.
+    /// Mean illuminance of the masters of the other low-discrepancy sequences, and its own nRMS from their
+    /// spread.
     fn reference(&self, without: usize) -> (Vec<f64>, f64) {
         let masters: Vec<Vec<f64>> = (0..SEQUENCES.len())
             .filter(|s| *s != without && !SEQUENCES[*s].is_randomised())
-            .filter_map(|s| self.runs(s).first()?.last().map(|m| illuminance(&m.radiance)))
+            .filter_map(|s| self.runs(s).first()?.last().map(illuminance))
             .collect();
-        let n = masters.len() as f64;
-        let sums = |f: fn(f64) -> f64| -> Vec<f64> {
-            (0..self.areas_m2.len()).map(|cell| masters.iter().map(|m| f(m[cell])).sum()).collect()
-        };
-        let sum = sums(|e| e);
-        let own = nrms_of_mean(&sum, &sums(|e| e * e), &self.areas_m2, masters.len() as u32);
-        (sum.iter().map(|e| e / n).collect(), own.unwrap_or(f64::NAN))
+        let n = masters.len();
+        let [sum, square] = moments(self.areas_m2.len(), n, |master, cell| masters[master][cell]);
+        let own = nrms_of_mean(&sum, &square, &self.areas_m2, n).unwrap_or(f64::NAN);
+        (sum.iter().map(|e| e / n as f64).collect(), own)
     }
 
     fn photons_per_s(&self, sequence: usize) -> f64 {
-        let mut speeds: Vec<f64> = self
-            .runs(sequence)
-            .iter()
-            .filter_map(|ladder| ladder.last())
-            .map(|m| m.photons as f64 / m.trace_s)
-            .collect();
+        let last = self.runs(sequence).iter().filter_map(|ladder| ladder.last());
+        let mut speeds: Vec<f64> = last.map(|m| m.photons as f64 / m.trace_s).collect();
         speeds.sort_unstable_by(f64::total_cmp);
         speeds[speeds.len() / 2]
     }
 }
 
-/// Illuminance in lx of radiances that arrive from the half space alike.
-fn illuminance(radiance: &[[f64; 3]]) -> Vec<f64> {
-    radiance.iter().map(|rgb| PI * luminance(*rgb)).collect()
+/// The paper's norm: sqrt( sum A d^2 / sum A ), d the Euclidean distance of two radiances [r, g, b] of a cell
+/// of area A, both in units of the greatest channel of any cell of `better`, so that this lies in [0, 1] as
+/// the paper's do. NaN without light.
+fn deviation(areas_m2: &[f64], estimate: &[[f64; 3]], better: &[[f64; 3]]) -> f64 {
+    let greatest = better.iter().flatten().copied().fold(0.0, f64::max);
+    let mut squares = 0.0;
+    for ((area, a), b) in areas_m2.iter().zip(estimate).zip(better) {
+        let d2: f64 = a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum();
+        squares += area * d2;
+    }
+    (squares / areas_m2.iter().sum::<f64>()).sqrt() / greatest
+}
+
+/// Illuminance of the cells, lx: their radiance arrives from the half space alike.
+fn illuminance(measured: &Measurement) -> Vec<f64> {
+    measured.radiance.iter().map(|rgb| PI * luminance(*rgb)).collect()
 }
 
 /// The law of the errors that the reference does not limit.
 fn law_of(rows: &[Row]) -> Option<Law> {
     let levels = rows.iter().filter(|r| !r.is_limited());
     Law::fit(&[levels.map(|r| Level { photons: r.photons, error: r.errors.nrms }).collect()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn norm_is_the_one_computed_by_hand() {
+        // Greatest 10: differences (0.1, 0.2, 0.2) -> d = 0.3 on area 1; (0, 0, 0.4) on area 3.
+        let better = [[10.0, 2.0, 3.0], [1.0, 1.0, 1.0]];
+        let estimate = [[11.0, 4.0, 1.0], [1.0, 1.0, 5.0]];
+        let expected = ((0.09 + 3.0 * 0.16) / 4.0f64).sqrt();
+        assert!((deviation(&[1.0, 3.0], &estimate, &better) - expected).abs() < 1e-15);
+        // Any unit of radiance and of area gives the same.
+        let scaled = |m: &[[f64; 3]]| m.iter().map(|c| c.map(|x| 8.0 * x)).collect::<Vec<_>>();
+        let other = deviation(&[0.5, 1.5], &scaled(&estimate), &scaled(&better));
+        assert!((other - expected).abs() < 1e-15);
+        assert_eq!(deviation(&[1.0, 3.0], &better, &better), 0.0);
+    }
 }

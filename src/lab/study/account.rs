@@ -1,8 +1,9 @@
-//! The coordinates that a photon uses, predicted from the events it goes through, beside the paper's equations.
+//! The coordinates that a photon uses, predicted from the events it goes through, beside the paper's
+//! equations.
 //!
-//! The prediction shares nothing with the counter in [`crate::sample::coordinates`]: events are counted as the walk asks for
-//! them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a rejection come from the table's
-//! integrals.
+//! The prediction shares nothing with the counter in [`crate::sample::coordinates`]: events are counted as
+//! the walk asks for them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a
+//! rejection come from the table's integrals.
 
 use crate::emitter::Emits;
 use crate::run::Algorithm;
@@ -32,7 +33,8 @@ pub struct Events {
     pub end: f64,
     /// Events with more than one outcome.
     pub decisions: f64,
-    /// Coordinates that those take with renormalisation: one for all, and one more whenever fewer than 24 bits are left.
+    /// Coordinates that those take with renormalisation: one for all, and one more whenever fewer than 24
+    /// bits are left.
     pub shared: f64,
     /// Continuous coordinates of scattered directions.
     pub continuous: f64,
@@ -62,6 +64,22 @@ impl Events {
 }
 
 impl Events {
+    fn fields(&mut self) -> [&mut f64; 10] {
+        let [cells, whole] = &mut self.table_proposals;
+        [
+            &mut self.specular,
+            &mut self.scattered,
+            &mut self.end,
+            &mut self.decisions,
+            &mut self.shared,
+            &mut self.continuous,
+            &mut self.tables,
+            &mut self.table_choices,
+            cells,
+            whole,
+        ]
+    }
+
     /// Coordinates of scattered directions.
     fn scattering(&self, algorithm: Algorithm) -> f64 {
         let others = self.continuous - self.tables;
@@ -78,8 +96,8 @@ impl Events {
     }
 }
 
-/// Coordinates of an emission: the choices (emitter, cell), each with a coordinate of its own unless they are shared, then
-/// the direction.
+/// Coordinates of an emission: the choices (emitter, cell), each with a coordinate of its own unless they are
+/// shared, then the direction.
 fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
     let emitters = scene.emitters.as_slice();
     let chosen_emitter = emitters.iter().filter(|e| e.flux_lm() > 0.0).count() > 1;
@@ -100,7 +118,7 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
                 (Sampling::Rejection(_), Some(grid)) => {
                     own([chosen_emitter, false]) + 3.0 * grid.proposals_of_table()
                 }
-                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.coordinates()),
+                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.kind().coordinates),
             };
             emitter.flux_lm() / total * coordinates
         })
@@ -110,7 +128,8 @@ fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
 fn count<P: Points>(scene: &Scene, points: &P) -> Events {
     let mut sum = Events::default();
     for index in 0..PHOTONS {
-        let mut chooser = Watched::new(Coordinates::new(points, index, true));
+        let mut chooser =
+            Watched { inner: Coordinates::new(points, index, true), seen: Events::default(), span: None };
         let Some((emitter, emission)) = scene.emitters.emit(Sampling::default(), &mut chooser.inner) else {
             continue;
         };
@@ -134,30 +153,12 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
             }
             End::Escaped | End::Killed => events.end = 1.0,
         }
-        sum.specular += events.specular;
-        sum.scattered += events.scattered;
-        sum.end += events.end;
-        sum.decisions += chooser.decisions;
-        sum.shared += chooser.shared;
-        sum.continuous += chooser.continuous;
-        sum.tables += chooser.tables;
-        sum.table_choices += chooser.table_choices;
-        for (total, proposals) in sum.table_proposals.iter_mut().zip(events.table_proposals) {
-            *total += proposals;
+        for mut part in [events, chooser.seen] {
+            sum.fields().into_iter().zip(part.fields()).for_each(|(sum, part)| *sum += *part);
         }
     }
-    let n = PHOTONS as f64;
-    Events {
-        specular: sum.specular / n,
-        scattered: sum.scattered / n,
-        end: sum.end / n,
-        decisions: sum.decisions / n,
-        shared: sum.shared / n,
-        continuous: sum.continuous / n,
-        tables: sum.tables / n,
-        table_choices: sum.table_choices / n,
-        table_proposals: sum.table_proposals.map(|p| p / n),
-    }
+    sum.fields().into_iter().for_each(|field| *field /= PHOTONS as f64);
+    sum
 }
 
 /// Counts arrivals by what the surface is.
@@ -186,27 +187,18 @@ impl<T> Sink<T> for Arrivals<'_> {
 /// Passes questions on and counts them.
 struct Watched<'p, P> {
     inner: Coordinates<'p, P>,
-    decisions: f64,
-    shared: f64,
+    seen: Events,
     /// Probability of what was decided on the coordinate in use; `None` before the first.
     span: Option<f64>,
-    continuous: f64,
-    tables: f64,
-    table_choices: f64,
 }
 
-impl<'p, P: Points> Watched<'p, P> {
-    fn new(inner: Coordinates<'p, P>) -> Self {
-        let (tables, table_choices) = (0.0, 0.0);
-        Self { inner, decisions: 0.0, shared: 0.0, span: None, continuous: 0.0, tables, table_choices }
-    }
-
+impl<P: Points> Watched<'_, P> {
     /// An event of this probability on the coordinate of all events.
     fn share(&mut self, probability: f64) {
         // Of 64 bits 24 must be left: 40 may be spent.
         let left = self.span.filter(|span| -span.log2() <= 40.0);
         if left.is_none() {
-            self.shared += 1.0;
+            self.seen.shared += 1.0;
         }
         self.span = Some(left.unwrap_or(1.0) * probability);
     }
@@ -216,26 +208,26 @@ impl<P: Points> Chooser for Watched<'_, P> {
     fn happens(&mut self, probability: f64) -> bool {
         let happened = self.inner.happens(probability);
         if probability > 0.0 && probability < 1.0 {
-            self.decisions += 1.0;
+            self.seen.decisions += 1.0;
             self.share(if happened { probability } else { 1.0 - probability });
         }
         happened
     }
 
     fn uniform(&mut self, purpose: Purpose) -> f64 {
-        self.continuous += 1.0;
+        self.seen.continuous += 1.0;
         self.inner.uniform(purpose)
     }
 
     fn reusable(&mut self, purpose: Purpose) -> Reusable {
         // Only tables ask for these, for two each.
-        self.continuous += 1.0;
-        self.tables += 1.0;
+        self.seen.continuous += 1.0;
+        self.seen.tables += 1.0;
         self.inner.reusable(purpose)
     }
 
     fn decide<R>(&mut self, purpose: Purpose, choice: impl FnOnce(&mut Reusable) -> R) -> R {
-        self.table_choices += 1.0;
+        self.seen.table_choices += 1.0;
         let mut probability = 1.0;
         let chosen = self.inner.decide(purpose, |u| {
             let before = u.span();
@@ -250,7 +242,7 @@ impl<P: Points> Chooser for Watched<'_, P> {
     fn left(&mut self, left: f64, probability: f64, purpose: Purpose) -> f64 {
         // A row and a column: without renormalisation they are one choice, of a cell.
         if probability < 1.0 {
-            self.table_choices += 0.5;
+            self.seen.table_choices += 0.5;
         }
         self.inner.left(left, probability, purpose)
     }

@@ -1,13 +1,15 @@
 //! How an error falls with the number of photons: error = c N^rate, by least squares on logarithms.
 //!
-//! Every seed gives a slope of its own; the rate is their mean and its standard error their spread over the root of their
-//! number. The errors of one seed at several N share points, so the residuals about one line would say less than there
-//! is to say; they are used only where there is a single seed.
+//! Every seed gives a slope of its own; the rate is their mean and its standard error their spread over the
+//! root of their number. The errors of one seed at several N share points, so the residuals about one line
+//! would say less than there is to say; they are used only where there is a single seed.
 
-use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+use super::norms::{mean_and_variance, root_mean_square};
 
 /// An error at a number of photons.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Level {
     /// Photons.
     pub photons: u64,
@@ -16,7 +18,7 @@ pub struct Level {
 }
 
 /// Where the standard error of a rate comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Uncertainty {
     /// From the slopes of several seeds.
     Seeds,
@@ -27,7 +29,7 @@ pub enum Uncertainty {
 }
 
 /// error = c N^rate over a measured range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law {
     /// The exponent of N.
     pub rate: f64,
@@ -42,7 +44,7 @@ pub struct Law {
 }
 
 /// A number from a law.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
     /// The number.
     pub value: f64,
@@ -51,39 +53,40 @@ pub struct Prediction {
 }
 
 impl Law {
-    /// The law of errors measured with one or several seeds, each at two or more numbers of photons. The levels of a
-    /// seed may stand in any order. It goes through the middle, in logarithms, of the root mean squares over the seeds.
+    /// The law of errors measured with one or several seeds, each at two or more numbers of photons. The
+    /// levels of a seed may stand in any order. It goes through the middle, in logarithms, of the root mean
+    /// squares over the seeds.
     ///
-    /// A seed's errors that are not positive and finite have no logarithm: they are left out, and so is what is not
-    /// [`fitted`]. `None` when no seed has two levels.
+    /// A seed's errors that are not positive and finite have no logarithm: they are left out, and so is what
+    /// is not [`fitted`]. `None` when no seed has two levels.
     pub fn fit(seeds: &[Vec<Level>]) -> Option<Self> {
         let usable = |level: &&Level| level.photons > 0 && level.error > 0.0 && level.error.is_finite();
-        let all: Vec<Vec<Level>> =
+        let mut chosen: Vec<Vec<Level>> =
             seeds.iter().map(|levels| levels.iter().filter(usable).copied().collect()).collect();
-        let used = fitted(&distinct(&all));
-        let chosen: Vec<Vec<Level>> = all
-            .iter()
-            .map(|levels| levels.iter().filter(|l| used.contains(&l.photons)).copied().collect())
-            .collect();
+        let measured = distinct(chosen.iter().flatten().map(|l| l.photons));
+        let used = fitted(&measured);
+        chosen.iter_mut().for_each(|levels| levels.retain(|l| used.contains(&l.photons)));
         let lines: Vec<Line> = chosen.iter().filter_map(|levels| Line::through(levels)).collect();
         if lines.is_empty() {
             return None;
         }
-        let rate = lines.iter().map(|l| l.slope).sum::<f64>() / lines.len() as f64;
-        let (rate_standard_error, uncertainty) = match lines.as_slice() {
-            [only] => match only.slope_error {
-                Some(error) => (Some(error), Uncertainty::Residuals),
-                None => (None, Uncertainty::Unknown),
-            },
-            several => {
-                let n = several.len() as f64;
-                let squares: f64 = several.iter().map(|l| (l.slope - rate) * (l.slope - rate)).sum();
-                (Some((squares / (n - 1.0) / n).sqrt()), Uncertainty::Seeds)
-            }
+        let slopes: Vec<f64> = lines.iter().map(|l| l.slope).collect();
+        let (rate, variance) = mean_and_variance(&slopes);
+        let (rate_standard_error, uncertainty) = match (variance, lines[0].slope_error) {
+            (Some(variance), _) => (Some((variance / lines.len() as f64).sqrt()), Uncertainty::Seeds),
+            (None, Some(error)) => (Some(error), Uncertainty::Residuals),
+            (None, None) => (None, Uncertainty::Unknown),
         };
-        let measured = distinct(&all);
+        // The middle of the levels: means of ln N and of ln (root mean square over the seeds).
+        let mut centre = [0.0; 2];
+        for &n in &used {
+            let same = chosen.iter().flatten().filter(|l| l.photons == n);
+            centre[0] += libm::log(n as f64);
+            centre[1] += libm::log(root_mean_square(&same.map(|l| l.error).collect::<Vec<f64>>()));
+        }
+        let centre = centre.map(|sum| sum / used.len() as f64);
         let measured = [*measured.first()?, *measured.last()?];
-        Some(Self { rate, rate_standard_error, uncertainty, measured, centre: centre(&chosen) })
+        Some(Self { rate, rate_standard_error, uncertainty, measured, centre })
     }
 
     /// The error at a number of photons, which need not be whole.
@@ -142,36 +145,16 @@ impl Line {
     }
 }
 
-/// Which of these numbers of photons a law is fitted to: the powers of two, if there are two or more of them. Other N cost
-/// a net part of its evenness, and belong to another law.
-pub fn fitted(ladder: &[u64]) -> Vec<u64> {
+/// Which of these numbers of photons a law is fitted to: the powers of two, if there are two or more of them.
+/// Other N cost a net part of its evenness, and belong to another law.
+pub(crate) fn fitted(ladder: &[u64]) -> Vec<u64> {
     let powers: Vec<u64> = ladder.iter().copied().filter(|n| n.is_power_of_two()).collect();
     if powers.len() >= 2 { powers } else { ladder.to_vec() }
 }
 
-/// The numbers of photons that occur, rising.
-fn distinct(seeds: &[Vec<Level>]) -> Vec<u64> {
-    let mut photons: Vec<u64> = seeds.iter().flatten().map(|l| l.photons).collect();
-    photons.sort_unstable();
-    photons.dedup();
-    photons
-}
-
-/// Mean of ln N and of ln (root mean square over the seeds) over the levels.
-fn centre(seeds: &[Vec<Level>]) -> [f64; 2] {
-    let photons = distinct(seeds);
-    let mut sum = [0.0; 2];
-    for &n in &photons {
-        let errors: Vec<f64> = seeds.iter().flatten().filter(|l| l.photons == n).map(|l| l.error).collect();
-        sum[0] += libm::log(n as f64);
-        sum[1] += libm::log(root_mean_square(&errors));
-    }
-    sum.map(|s| s / photons.len() as f64)
-}
-
-/// sqrt of the mean of the squares; NaN of nothing.
-pub fn root_mean_square(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+/// The different numbers among these, rising.
+pub(crate) fn distinct(numbers: impl Iterator<Item = u64>) -> Vec<u64> {
+    numbers.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 #[cfg(test)]
@@ -218,7 +201,8 @@ mod tests {
 
     #[test]
     fn one_seed_is_judged_by_its_residuals() {
-        // ln error / ln 2 = 0, -1, -1 at ln N / ln 2 = 0, 1, 2: slope -1/2, residuals +-1/6, 1/3, variance 1/6, xx 2.
+        // ln error / ln 2 = 0, -1, -1 at ln N / ln 2 = 0, 1, 2: slope -1/2, residuals +-1/6, 1/3, variance
+        // 1/6, xx 2.
         let seed = [(1, 1.0), (2, 0.5), (4, 0.5)].map(|(photons, error)| Level { photons, error }).to_vec();
         let law = Law::fit(std::slice::from_ref(&seed)).unwrap();
         assert!((law.rate + 0.5).abs() < 1e-15);

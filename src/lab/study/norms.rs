@@ -1,6 +1,8 @@
-//! How far one map of illuminance is from another (METHOD 6): three norms over cells, and the reference's own error.
+//! How far one map of illuminance is from another (METHOD 6): three norms over cells, and the reference's own
+//! error.
 //!
-//! E is the estimated, E* the reference illuminance of a cell, A its area; sums go over all cells of all receivers.
+//! E is the estimated, E* the reference illuminance of a cell, A its area; sums go over all cells of all
+//! receivers.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,11 +11,11 @@ use crate::error::{Diagnostic, Kind, Result};
 /// The error of one map in three norms, as fractions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// See [`relative_rms`].
+    /// sqrt( sum A (E - E*)^2 / sum A E*^2 ).
     pub relative_rms: f64,
-    /// See [`nrms`].
+    /// Root mean square of E - E* over the mean of E*, both means weighted by area.
     pub nrms: f64,
-    /// See [`relative_l1`].
+    /// sum A |E - E*| / sum A E*.
     pub relative_l1: f64,
 }
 
@@ -21,60 +23,60 @@ impl Errors {
     /// All three norms of an estimate against the reference, lx and m2, cell by cell.
     ///
     /// # Errors
-    /// [`Kind::Range`] when the numbers of cells differ, or the reference has no light or none that is finite.
+    /// [`Kind::Range`] when the numbers of cells differ, or the reference has no light or none that is
+    /// finite.
     pub fn of(estimate_lx: &[f64], reference_lx: &[f64], areas_m2: &[f64]) -> Result<Self> {
-        if estimate_lx.len() != reference_lx.len() || areas_m2.len() != reference_lx.len() {
-            let found =
-                format!("{} cells against {} of the reference", estimate_lx.len(), reference_lx.len());
-            return Err(Diagnostic::new(Kind::Range, found, "maps of the same cells"));
+        let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
+        let (estimates, references) = (estimate_lx.len(), reference_lx.len());
+        if estimates != references || areas_m2.len() != references {
+            let found = format!("{estimates} cells against {references} of the reference");
+            return fail(found, "maps of the same cells");
         }
-        let mean = mean_lx(reference_lx, areas_m2);
+        let area_m2 = areas_m2.iter().sum::<f64>();
+        let light = weighted_sum(reference_lx, areas_m2, |e| e);
+        let mean = light / area_m2;
         if !(mean > 0.0 && mean.is_finite()) {
             let found = format!("a reference of {mean} lx on average");
-            return Err(Diagnostic::new(
-                Kind::Range,
-                found,
-                "light on the receivers: errors are relative to it",
-            ));
+            return fail(found, "light on the receivers: errors are relative to it");
         }
+        let cells = || estimate_lx.iter().zip(reference_lx).zip(areas_m2);
+        let squares: f64 = cells().map(|((e, r), a)| a * (e - r) * (e - r)).sum();
+        let sizes: f64 = cells().map(|((e, r), a)| a * (e - r).abs()).sum();
         Ok(Self {
-            relative_rms: relative_rms(estimate_lx, reference_lx, areas_m2),
-            nrms: nrms(estimate_lx, reference_lx, areas_m2),
-            relative_l1: relative_l1(estimate_lx, reference_lx, areas_m2),
+            relative_rms: (squares / weighted_sum(reference_lx, areas_m2, |e| e * e)).sqrt(),
+            nrms: (squares / area_m2).sqrt() / mean,
+            relative_l1: sizes / light,
         })
     }
-}
 
-/// sqrt( sum A (E - E*)^2 / sum A E*^2 ); NaN without light.
-pub fn relative_rms(estimate_lx: &[f64], reference_lx: &[f64], areas_m2: &[f64]) -> f64 {
-    let light = sum(reference_lx, areas_m2, |e| e * e);
-    (squared_difference(estimate_lx, reference_lx, areas_m2) / light).sqrt()
-}
-
-/// Root mean square of E - E* over the mean of E*, both means weighted by area; NaN without light.
-pub fn nrms(estimate_lx: &[f64], reference_lx: &[f64], areas_m2: &[f64]) -> f64 {
-    let squared = squared_difference(estimate_lx, reference_lx, areas_m2) / areas_m2.iter().sum::<f64>();
-    squared.sqrt() / mean_lx(reference_lx, areas_m2)
-}
-
-/// sum A |E - E*| / sum A E*; NaN without light.
-pub fn relative_l1(estimate_lx: &[f64], reference_lx: &[f64], areas_m2: &[f64]) -> f64 {
-    let difference: f64 =
-        estimate_lx.iter().zip(reference_lx).zip(areas_m2).map(|((e, r), a)| a * (e - r).abs()).sum();
-    difference / sum(reference_lx, areas_m2, |e| e)
-}
-
-/// nRMS to expect of the mean of R replicates against the truth: sqrt( sum A s^2 / R / sum A ) over the mean, s^2 the
-/// variance of a cell over the replicates with R - 1 degrees of freedom.
-///
-/// `sum_lx` and `square_lx2` hold a cell's sum and sum of squares over the replicates. `None` for fewer than two
-/// replicates or without light.
-pub fn nrms_of_mean(sum_lx: &[f64], square_lx2: &[f64], areas_m2: &[f64], replicates: u32) -> Option<f64> {
-    if replicates < 2 {
-        return None;
+    /// Over seeds: root mean square of `relative_rms` and `nrms`, mean of `relative_l1`; beside them the
+    /// standard deviation of `nrms`.
+    pub fn over_seeds(seeds: &[Self]) -> (Self, Option<f64>) {
+        let of = |norm: fn(&Self) -> f64| seeds.iter().map(norm).collect::<Vec<f64>>();
+        let nrms = of(|e| e.nrms);
+        let errors = Self {
+            relative_rms: root_mean_square(&of(|e| e.relative_rms)),
+            nrms: root_mean_square(&nrms),
+            relative_l1: of(|e| e.relative_l1).iter().sum::<f64>() / seeds.len() as f64,
+        };
+        (errors, mean_and_variance(&nrms).1.map(f64::sqrt))
     }
-    let r = f64::from(replicates);
-    let mean = mean_lx(sum_lx, areas_m2) / r;
+}
+
+/// nRMS to expect of the mean of R replicates against the truth: sqrt( sum A s^2 / R / sum A ) over the mean,
+/// s^2 the variance of a cell over the replicates with R - 1 degrees of freedom.
+///
+/// `sum_lx` and `square_lx2` hold a cell's sum and sum of squares over the replicates ([`moments`]). `None`
+/// for fewer than two replicates or without light.
+pub(crate) fn nrms_of_mean(
+    sum_lx: &[f64],
+    square_lx2: &[f64],
+    areas_m2: &[f64],
+    replicates: usize,
+) -> Option<f64> {
+    let r = replicates as f64;
+    let area_m2 = areas_m2.iter().sum::<f64>();
+    let mean = weighted_sum(sum_lx, areas_m2, |e| e) / area_m2 / r;
     let variance: f64 = sum_lx
         .iter()
         .zip(square_lx2)
@@ -82,19 +84,32 @@ pub fn nrms_of_mean(sum_lx: &[f64], square_lx2: &[f64], areas_m2: &[f64], replic
         // Where all replicates agree, rounding may leave less than nothing.
         .map(|((sum, square), area)| area * (square - sum * sum / r).max(0.0) / (r - 1.0) / r)
         .sum();
-    let error = (variance / areas_m2.iter().sum::<f64>()).sqrt() / mean;
-    error.is_finite().then_some(error)
+    let error = (variance / area_m2).sqrt() / mean;
+    (replicates > 1 && error.is_finite()).then_some(error)
 }
 
-fn mean_lx(illuminance_lx: &[f64], areas_m2: &[f64]) -> f64 {
-    sum(illuminance_lx, areas_m2, |e| e) / areas_m2.iter().sum::<f64>()
+/// Sums over maps of each cell's value and of its square; `value` of a map and a cell.
+pub(crate) fn moments(cells: usize, maps: usize, value: impl Fn(usize, usize) -> f64) -> [Vec<f64>; 2] {
+    let sums = |of: fn(f64) -> f64| {
+        (0..cells).map(|cell| (0..maps).map(|map| of(value(map, cell))).sum::<f64>()).collect()
+    };
+    [sums(|e| e), sums(|e| e * e)]
 }
 
-fn squared_difference(estimate_lx: &[f64], reference_lx: &[f64], areas_m2: &[f64]) -> f64 {
-    estimate_lx.iter().zip(reference_lx).zip(areas_m2).map(|((e, r), a)| a * (e - r) * (e - r)).sum()
+/// Mean, and variance with n - 1 degrees of freedom where there are two values or more.
+pub(crate) fn mean_and_variance(values: &[f64]) -> (f64, Option<f64>) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    (mean, (values.len() > 1).then(|| squares / (n - 1.0)))
 }
 
-fn sum(illuminance_lx: &[f64], areas_m2: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+/// sqrt of the mean of the squares; NaN of nothing.
+pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+fn weighted_sum(illuminance_lx: &[f64], areas_m2: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     illuminance_lx.iter().zip(areas_m2).map(|(e, a)| a * of(*e)).sum()
 }
 
@@ -118,7 +133,8 @@ mod tests {
 
     #[test]
     fn the_error_of_a_mean_of_replicates_is_that_of_the_textbook() {
-        // Two cells, three replicates: 1 2 3 and 4 4 7. Variances 1 and 3, of the means 1/3 and 1; means 2 and 5.
+        // Two cells, three replicates: 1 2 3 and 4 4 7. Variances 1 and 3, of the means 1/3 and 1; means 2
+        // and 5.
         let (sums, squares) = ([6.0, 15.0], [14.0, 81.0]);
         let error = nrms_of_mean(&sums, &squares, &[1.0, 3.0], 3).unwrap();
         let by_hand = ((1.0 / 3.0 + 3.0 * 1.0) / 4.0_f64).sqrt() / ((2.0 + 15.0) / 4.0);
@@ -128,6 +144,20 @@ mod tests {
         // 0.1 three times: the squares' rounding must not give the root of a negative number.
         let equal = nrms_of_mean(&[0.1 + 0.1 + 0.1], &[3.0 * (0.1 * 0.1)], &[1.0], 3).unwrap();
         assert!((0.0..1e-7).contains(&equal), "{equal}");
+    }
+
+    #[test]
+    fn deviations_are_those_computed_by_hand() {
+        assert_eq!(mean_and_variance(&[1.0, 3.0]), (2.0, Some(2.0)));
+        assert_eq!(mean_and_variance(&[1.0]), (1.0, None));
+        let seed = |e: f64| Errors { relative_rms: 2.0 * e, nrms: e, relative_l1: 3.0 * e };
+        let (errors, spread) = Errors::over_seeds(&[seed(3.0), seed(4.0)]);
+        let expected = Errors { relative_rms: 50.0_f64.sqrt(), nrms: 12.5_f64.sqrt(), relative_l1: 10.5 };
+        assert_eq!((errors, spread), (expected, Some(0.5_f64.sqrt())));
+        assert_eq!(
+            moments(2, 3, |map, cell| (map * 10 + cell) as f64),
+            [vec![30.0, 33.0], vec![500.0, 563.0]]
+        );
     }
 
     #[test]

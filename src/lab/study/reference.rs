@@ -1,64 +1,60 @@
 //! The reference that errors are measured against (METHOD 6).
 //!
-//! It shares as little as possible with what is measured: another sequence (Halton points under a rotation), another
-//! emission map (directions uniform in solid angle, weighted by the intensity) and another seed. Its own error comes from
-//! independent replicates.
+//! It shares as little as possible with what is measured: another sequence (Halton points under a rotation),
+//! another emission map (directions uniform in solid angle, weighted by the intensity) and another seed. Its
+//! own error comes from independent replicates.
 
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use crate::emitter::{Emits, Emitter, Emitters};
+use crate::emitter::{Emits, Emitter};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::run::tracer::PointSet;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
-use crate::sequence::{Points, Sequence};
+use crate::sequence::Sequence;
 use crate::surface::{Grey, Rgb};
 use crate::tally::Receivers;
-use crate::transport::parallel::{How, trace_from};
+use crate::transport::parallel::{How, trace_range};
 
-use crate::lab::study::cells::Grids;
-use crate::lab::study::norms::nrms_of_mean;
+use super::cells::{Grids, areas_m2};
+use super::norms::{Errors, moments, nrms_of_mean};
 
 /// Replicates of a reference: 7 degrees of freedom for its error.
 pub const REPLICATES: u32 = 8;
-/// Most photons of one replicate, so that weights in fixed point keep 16 bits behind the point.
-pub const MOST_PHOTONS_PER_REPLICATE: u64 = 1 << 32;
+/// Most photons of a reference: 2^32 in a replicate, so that weights in fixed point keep 16 bits behind the
+/// point.
+pub const MOST_REFERENCE_PHOTONS: u64 = REPLICATES as u64 * (1 << 32);
 /// Headroom of the fixed-point sums: light that comes back to one cell up to 2^16 times.
 const HEADROOM_BITS: u32 = 16;
+/// Point sequence of references.
+pub const SEQUENCE: Sequence = Sequence::HaltonRotation;
+/// Seed of references, unless a run has it.
+const SEED: u64 = 0x7265_6665_7265_6e63;
 
-/// What a reference is made of.
+/// What a reference is made of: 2^m Halton points in each of [`REPLICATES`] rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReferencePlan {
-    /// Point sequence; randomised.
-    pub sequence: Sequence,
-    /// Seed; not one of those measured.
-    pub seed: u64,
-    /// Photons of each of the [`REPLICATES`].
-    pub photons_per_replicate: u64,
+    /// Seed of the rotations.
+    pub(crate) seed: u64,
+    /// 2^m.
+    pub(crate) photons_per_replicate: u64,
 }
 
 impl ReferencePlan {
-    /// A reference of at least `photons` in all, for runs with these seeds.
+    /// A reference of at least `photons` in all, under a seed that is none of `seeds`, those of the runs.
     ///
     /// # Errors
-    /// No photons, and more than [`MOST_PHOTONS_PER_REPLICATE`] a replicate.
+    /// No photons, and more than [`MOST_REFERENCE_PHOTONS`].
     pub fn new(photons: u64, seeds: &[u64]) -> Result<Self> {
-        let share = photons.div_ceil(u64::from(REPLICATES)).max(1);
-        let photons_per_replicate = share.checked_next_power_of_two().unwrap_or(u64::MAX);
-        if photons == 0 || photons_per_replicate > MOST_PHOTONS_PER_REPLICATE {
-            return Err(Diagnostic::new(
-                Kind::Range,
-                format!("{photons} reference photons"),
-                "1 to 2^35 reference photons",
-            ));
+        if !(1..=MOST_REFERENCE_PHOTONS).contains(&photons) {
+            let found = format!("{photons} reference photons");
+            return Err(Diagnostic::new(Kind::Range, found, "1 to 2^35 reference photons"));
         }
-        // A seed that no run has, the same for the same runs.
-        let mut seed = 0x7265_6665_7265_6e63u64;
-        while seeds.contains(&seed) {
-            seed = seed.wrapping_add(1);
-        }
-        Ok(Self { sequence: SEQUENCE, seed, photons_per_replicate })
+        let photons_per_replicate = photons.div_ceil(u64::from(REPLICATES)).next_power_of_two();
+        // The same for the same runs.
+        let seed = (0..).map(|k| SEED.wrapping_add(k)).find(|seed| !seeds.contains(seed)).unwrap_or(SEED);
+        Ok(Self { seed, photons_per_replicate })
     }
 
     /// Photons in all.
@@ -68,13 +64,9 @@ impl ReferencePlan {
 
     /// Fixed-point units of a photon of weight 1.
     fn units_per_photon(&self) -> f64 {
-        let bits = 64 - HEADROOM_BITS - self.photons_per_replicate.next_power_of_two().trailing_zeros();
-        (1u64 << bits) as f64
+        (1u64 << (64 - HEADROOM_BITS - self.photons_per_replicate.trailing_zeros())) as f64
     }
 }
-
-/// Most photons of a reference.
-pub const MOST_REFERENCE_PHOTONS: u64 = MOST_PHOTONS_PER_REPLICATE * REPLICATES as u64;
 
 /// Emission map of the reference of a scene, in words: only tables have two.
 pub fn emission_map(scene: &Scene) -> &'static str {
@@ -89,85 +81,106 @@ pub fn emission_map(scene: &Scene) -> &'static str {
     }
 }
 
-/// Sequence of references.
-const SEQUENCE: Sequence = Sequence::HaltonRotation;
-
 /// Fixed-point sums of one replicate of a reference, cell by cell over all grids; `None` after an interrupt.
 ///
 /// # Errors
 /// A sequence that cannot have this many points.
 pub fn trace_replicate(
-    scene: &Scene,
-    grids: &Grids,
+    grids: &Grids<'_>,
     plan: &ReferencePlan,
     replicate: u32,
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Option<Vec<u64>>> {
+    let (scene, number) = (grids.scene, plan.photons_per_replicate);
     let receivers = Receivers::new(&scene.geometry, &grids.receivers);
+    let points = PointSet { sequence: SEQUENCE, seed: plan.seed, replicate, number }.any()?;
+    let emitters = scene.emitters.with_weights()?;
     let how = How { reuse: true, sampling: Sampling::default(), interrupt, progress };
-    let points =
-        PointSet { sequence: plan.sequence, seed: plan.seed, replicate, number: plan.photons_per_replicate };
-    let complete = Replicate {
-        scene,
-        emitters: scene.emitters.with_weights()?,
-        receivers: &receivers,
-        how,
-        photons: plan.photons_per_replicate,
-        units: plan.units_per_photon(),
-    }
-    .trace(&points.any()?);
+    let range = 0..number;
+    let sink = || receivers.fixed_point_sink(plan.units_per_photon());
+    let traced = if scene.is_coloured() {
+        trace_range(scene, &emitters, &points, range, Rgb::WHITE, how, sink)
+    } else {
+        trace_range(scene, &emitters, &points, range, Grey, how, sink)
+    };
     let counts = (0..grids.receivers.len()).flat_map(|i| receivers.counts(i).iter());
-    Ok(complete.then(|| counts.collect()))
-}
-
-struct Replicate<'a, 's> {
-    scene: &'s Scene,
-    emitters: Emitters,
-    receivers: &'a Receivers<'s>,
-    how: How<'a>,
-    photons: u64,
-    units: f64,
-}
-
-impl Replicate<'_, '_> {
-    fn trace<P: Points>(self, points: &P) -> bool {
-        let sink = || self.receivers.fixed_point_sink(self.units);
-        let Self { scene, emitters, how, .. } = &self;
-        if scene.is_coloured() {
-            trace_from(scene, emitters, points, 0..self.photons, Rgb::WHITE, *how, sink).complete
-        } else {
-            trace_from(scene, emitters, points, 0..self.photons, Grey, *how, sink).complete
-        }
-    }
+    Ok(traced.complete.then(|| counts.collect()))
 }
 
 /// The illuminance of every cell of all grids, and what tells its spread over replicates.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
-    /// Mean over replicates, lx.
-    pub illuminance_lx: Vec<f64>,
-    /// nRMS to expect of that mean against the truth, grid by grid.
-    pub own_nrms: Vec<f64>,
+#[derive(Debug)]
+pub struct Reference<'g> {
+    pub(super) grids: &'g Grids<'g>,
+    areas_m2: Vec<f64>,
+    illuminance_lx: Vec<f64>,
+    own_nrms: Vec<f64>,
 }
 
-impl Reference {
+impl<'g> Reference<'g> {
     /// From the fixed-point sums of all replicates.
-    pub fn new(scene: &Scene, grids: &Grids, plan: &ReferencePlan, replicates: &[Vec<u64>]) -> Self {
-        let photon_lm = scene.emitters.flux_lm() / plan.photons_per_replicate as f64;
-        let unit_lm = photon_lm / plan.units_per_photon();
-        let areas_m2 = grids.areas_m2();
-        let (mut sum_lx, mut square_lx2) = (Vec::new(), Vec::new());
-        for (cell, area_m2) in areas_m2.iter().enumerate() {
-            let lx = |counts: &Vec<u64>| counts[cell] as f64 * unit_lm / area_m2;
-            sum_lx.push(replicates.iter().map(lx).sum::<f64>());
-            square_lx2.push(replicates.iter().map(|counts| lx(counts) * lx(counts)).sum::<f64>());
+    ///
+    /// # Errors
+    /// Sums of another number of cells than the grids have.
+    pub fn new(grids: &'g Grids<'g>, plan: &ReferencePlan, replicates: &[Vec<u64>]) -> Result<Self> {
+        let cells = grids.cell_count();
+        if let Some(bad) = replicates.iter().find(|sums| sums.len() != cells) {
+            let found = format!("a replicate of {} cells", bad.len());
+            return Err(Diagnostic::new(Kind::Range, found, format!("{cells} cells")));
         }
-        let r = replicates.len() as u32;
+        let photon_lm = grids.scene.emitters.flux_lm() / plan.photons_per_replicate as f64;
+        let unit_lm = photon_lm / plan.units_per_photon();
+        let areas_m2 = areas_m2(&grids.receivers);
+        let r = replicates.len();
+        let lx =
+            |replicate: usize, cell: usize| replicates[replicate][cell] as f64 * unit_lm / areas_m2[cell];
+        let [sum, square] = moments(cells, r, lx);
         let own = |cells: Range<usize>| {
-            nrms_of_mean(&sum_lx[cells.clone()], &square_lx2[cells.clone()], &areas_m2[cells], r)
+            nrms_of_mean(&sum[cells.clone()], &square[cells.clone()], &areas_m2[cells], r).unwrap_or(f64::NAN)
         };
-        let own_nrms = grids.cell_ranges().into_iter().map(|cells| own(cells).unwrap_or(f64::NAN)).collect();
-        Self { illuminance_lx: sum_lx.iter().map(|sum| sum / f64::from(r)).collect(), own_nrms }
+        let own_nrms = grids.cell_ranges().map(own).collect();
+        let illuminance_lx = sum.iter().map(|sum| sum / r as f64).collect();
+        Ok(Self { grids, areas_m2, illuminance_lx, own_nrms })
+    }
+
+    /// Mean over the replicates, lx, cell by cell over all grids.
+    pub fn illuminance_lx(&self) -> &[f64] {
+        &self.illuminance_lx
+    }
+
+    /// nRMS to expect of that mean against the truth, grid by grid; NaN where it is unknown.
+    pub fn own_nrms(&self) -> &[f64] {
+        &self.own_nrms
+    }
+
+    /// Errors of a map by photons of `photon_lm` each, grid by grid, from its counts over all grids.
+    pub(super) fn errors(&self, counts: impl Iterator<Item = u64>, photon_lm: f64) -> Result<Vec<Errors>> {
+        let areas_m2 = &self.areas_m2;
+        let lx: Vec<f64> = counts.zip(areas_m2).map(|(n, area)| n as f64 * photon_lm / area).collect();
+        let of = |cells: Range<usize>| {
+            Errors::of(&lx[cells.clone()], &self.illuminance_lx[cells.clone()], &areas_m2[cells])
+        };
+        self.grids.cell_ranges().map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_plan_is_of_powers_of_two_and_of_a_seed_of_its_own() {
+        let plan = |photons, seeds: &[u64]| ReferencePlan::new(photons, seeds);
+        for (photons, each) in [(1, 1), (8, 1), (9, 2), (100, 16), (1 << 35, 1 << 32)] {
+            let plan = plan(photons, &[1]).unwrap();
+            assert_eq!((plan.photons_per_replicate, plan.photons()), (each, 8 * each));
+            // Of a weight of 1 in every photon 2^16 times the sum still fits 64 bits; 16 bits are behind the
+            // point.
+            assert_eq!(plan.units_per_photon() * each as f64, (1u64 << 48) as f64);
+        }
+        assert!(plan(0, &[]).is_err() && plan((1 << 35) + 1, &[]).is_err() && plan(u64::MAX, &[]).is_err());
+        assert_eq!(plan(1, &[SEED + 1]).unwrap().seed, SEED);
+        assert_eq!(plan(1, &[SEED + 1, SEED]).unwrap().seed, SEED + 2);
     }
 }

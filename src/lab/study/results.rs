@@ -1,15 +1,15 @@
-//! What a study measured, as plain data: written, read back and shown, nothing computed. [`crate::lab::study::table`] draws from it
-//! what is reported.
+//! What a study measured, as plain data: written, read back and shown, nothing computed. [`super::table`]
+//! draws from it what is reported.
 
 use serde::{Deserialize, Serialize};
 
-pub use crate::lab::study::norms::Errors;
+use super::norms::Errors;
 
 /// The variant that others are compared with.
 pub const BASELINE: &str = "mc";
 
-/// The paper's four algorithms: the name of the variant here, and how much less error than Monte Carlo the paper gives
-/// (METHOD 6) for a scene like the built-in one at 4 456 448 photons.
+/// The paper's four algorithms: the name of the variant here, and how much less error than Monte Carlo the
+/// paper gives (METHOD 6) for a scene like the built-in one at 4 456 448 photons.
 pub const PAPER_RATIOS: [(&str, f64); 4] =
     [("mc", 1.0), ("qmc", 1.59), ("qmc-inverse", 1.93), ("qmc-inverse-reuse", 2.19)];
 
@@ -39,7 +39,7 @@ pub struct Study {
     /// Threads.
     pub threads: usize,
     /// What errors are measured against.
-    pub reference: Reference,
+    pub reference: ReferenceUsed,
     /// The variants, in the order of the tables.
     pub variants: Vec<VariantResult>,
     /// What else is to be said about the scene or the study.
@@ -48,7 +48,7 @@ pub struct Study {
 
 /// The map that stands for the truth, and its own error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Reference {
+pub struct ReferenceUsed {
     /// Photons of all replicates.
     pub photons: u64,
     /// Replicates; its own error comes from their spread.
@@ -59,7 +59,7 @@ pub struct Reference {
     pub emission_map: String,
     /// Its seed.
     pub seed: u64,
-    /// Its own nRMS on every grid ([`crate::lab::study::norms::nrms_of_mean`]).
+    /// Its own nRMS on every grid ([`super::reference::Reference::own_nrms`]).
     pub own_nrms: Vec<f64>,
     /// Its photons over the largest N of the ladder.
     pub factor: f64,

@@ -1,8 +1,8 @@
 //! What a study says: errors over seeds, rates, ratios to Monte Carlo at equal N and at equal CPU time.
 
-use crate::lab::study::fit::{Law, Level, Prediction, fitted, root_mean_square};
-use crate::lab::study::norms::Errors;
-use crate::lab::study::results::{Run, Study};
+use super::fit::{Law, Level, Prediction, distinct, fitted};
+use super::norms::Errors;
+use super::results::{Run, Study};
 
 /// An error of less than so many times the reference's own says as much about the reference.
 pub const REFERENCE_MARGIN: f64 = 3.0;
@@ -61,13 +61,11 @@ impl Table {
     /// All rows and trends of a study.
     pub fn new(study: &Study) -> Self {
         let photons_per_cpu_s: Vec<Option<f64>> = study.variants.iter().map(|v| speed(&v.runs)).collect();
-        let mut rows: Vec<Row> =
-            (0..study.variants.len()).flat_map(|variant| rows_of_variant(study, variant)).collect();
-        let trends: Vec<Vec<Trend>> = (0..study.variants.len())
-            .map(|v| {
-                (0..study.grids.len()).map(|g| trend(study, &rows, v, g, photons_per_cpu_s[v])).collect()
-            })
-            .collect();
+        let variants = || 0..study.variants.len();
+        let mut rows: Vec<Row> = variants().flat_map(|variant| rows_of_variant(study, variant)).collect();
+        let on_grid = |v: usize, grid: usize| trend(study, &rows, v, grid, photons_per_cpu_s[v]);
+        let trends_of = |v: usize| (0..study.grids.len()).map(|grid| on_grid(v, grid)).collect();
+        let trends: Vec<Vec<Trend>> = variants().map(trends_of).collect();
         if let Some(baseline) = study.baseline() {
             compare_with(baseline, &mut rows, &trends, photons_per_cpu_s[baseline]);
         }
@@ -81,21 +79,15 @@ impl Table {
 
     /// Every number of photons that some variant was run with, rising.
     pub fn ladder(&self) -> Vec<u64> {
-        let mut photons: Vec<u64> = self.rows.iter().map(|r| r.photons).collect();
-        photons.sort_unstable();
-        photons.dedup();
-        photons
+        distinct(self.rows.iter().map(|r| r.photons))
     }
 }
 
 /// Rows without ratios.
 fn rows_of_variant(study: &Study, variant: usize) -> Vec<Row> {
     let runs = &study.variants[variant].runs;
-    let mut ladder: Vec<u64> = runs.iter().map(|run| run.photons).collect();
-    ladder.sort_unstable();
-    ladder.dedup();
     let mut rows = Vec::new();
-    for photons in ladder {
+    for photons in distinct(runs.iter().map(|run| run.photons)) {
         let same: Vec<&Run> = runs.iter().filter(|run| run.photons == photons).collect();
         let n = same.len() as f64;
         for grid in 0..study.grids.len() {
@@ -103,19 +95,13 @@ fn rows_of_variant(study: &Study, variant: usize) -> Vec<Row> {
             if errors.is_empty() {
                 continue;
             }
-            let of = |norm: fn(&Errors) -> f64| errors.iter().map(norm).collect::<Vec<f64>>();
-            let nrms = of(|e| e.nrms);
-            let errors = Errors {
-                relative_rms: root_mean_square(&of(|e| e.relative_rms)),
-                nrms: root_mean_square(&nrms),
-                relative_l1: of(|e| e.relative_l1).iter().sum::<f64>() / nrms.len() as f64,
-            };
+            let (errors, nrms_spread) = Errors::over_seeds(&errors);
             rows.push(Row {
                 variant,
                 photons,
                 grid,
                 errors,
-                nrms_spread: standard_deviation(&nrms),
+                nrms_spread,
                 cpu_s: median(same.iter().map(|run| run.cpu_s).collect()),
                 coordinates: same.iter().map(|run| run.coordinates_mean).sum::<f64>() / n,
                 ratio_equal_n: None,
@@ -134,15 +120,13 @@ fn is_limited(study: &Study, grid: usize, nrms: f64) -> bool {
 
 fn trend(study: &Study, rows: &[Row], variant: usize, grid: usize, speed: Option<f64>) -> Trend {
     let runs = &study.variants[variant].runs;
-    let mut seeds: Vec<u64> = runs.iter().map(|run| run.seed).collect();
-    seeds.sort_unstable();
-    seeds.dedup();
     let levels_of = |seed: u64| -> Vec<Level> {
         runs.iter()
             .filter(|run| run.seed == seed)
             .filter_map(|run| Some(Level { photons: run.photons, error: run.errors.get(grid)?.nrms }))
             .collect()
     };
+    let seeds = distinct(runs.iter().map(|run| run.seed));
     let law = Law::fit(&seeds.into_iter().map(levels_of).collect::<Vec<_>>());
     let time_to_target = law.and_then(|law| law.time_for(TARGET_ERROR, speed?));
     let own: Vec<&Row> = rows.iter().filter(|r| (r.variant, r.grid) == (variant, grid)).collect();
@@ -152,15 +136,12 @@ fn trend(study: &Study, rows: &[Row], variant: usize, grid: usize, speed: Option
 }
 
 fn compare_with(baseline: usize, rows: &mut [Row], trends: &[Vec<Trend>], speed: Option<f64>) {
-    let measured: Vec<(u64, usize, f64)> =
-        rows.iter().filter(|r| r.variant == baseline).map(|r| (r.photons, r.grid, r.errors.nrms)).collect();
+    let measured: Vec<Row> = rows.iter().filter(|r| r.variant == baseline).cloned().collect();
     for row in rows {
         let own = row.errors.nrms;
         let ratio = |error: f64| Some(error / own).filter(|r| r.is_finite());
-        row.ratio_equal_n = measured
-            .iter()
-            .find(|(photons, grid, _)| (*photons, *grid) == (row.photons, row.grid))
-            .and_then(|(_, _, error)| ratio(*error));
+        let mut same = measured.iter().filter(|r| (r.photons, r.grid) == (row.photons, row.grid));
+        row.ratio_equal_n = same.next().and_then(|r| ratio(r.errors.nrms));
         row.ratio_equal_time = if row.variant == baseline {
             // Its own time gives its own error: no law is needed to know that.
             ratio(own).map(|value| Prediction { value, extrapolated: false })
@@ -180,13 +161,6 @@ fn speed(runs: &[Run]) -> Option<f64> {
     (value > 0.0 && value.is_finite()).then_some(value)
 }
 
-fn standard_deviation(values: &[f64]) -> Option<f64> {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-    (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt())
-}
-
 /// The middle value, or the mean of the two middle ones; NaN of nothing.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -202,11 +176,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn medians_and_deviations_are_those_computed_by_hand() {
+    fn medians_are_those_computed_by_hand() {
         assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(vec![4.0, 1.0, 2.0, 9.0]), 3.0);
         assert!(median(vec![]).is_nan());
-        assert_eq!(standard_deviation(&[1.0, 3.0]), Some(2.0_f64.sqrt()));
-        assert_eq!(standard_deviation(&[1.0]), None);
     }
 }

@@ -1,8 +1,8 @@
 //! One eye path: along mirrors and through glass to the first surface that scatters.
 //!
-//! What it finds (Heckbert's notation; S mirrors and glass, D what scatters): emitters that it crosses, L S* E; at the
-//! scattering surface by shadow rays what comes straight from emitters, L D S* E; and from the photons there what had at
-//! least one event before, L (S|D)+ D S* E. Each once.
+//! What it finds (Heckbert's notation; S mirrors and glass, D what scatters): emitters that it crosses, L S*
+//! E; at the scattering surface by shadow rays what comes straight from emitters, L D S* E; and from the
+//! photons there what had at least one event before, L (S|D)+ D S* E. Each once.
 
 use glam::DVec3;
 
@@ -50,8 +50,9 @@ struct Branch {
     events: u32,
 }
 
-/// Both ways at glass are followed as long as the fainter one keeps this share, else one of them is chosen: what glass mirrors is
-/// faint but often of something bright, and would be noise. At most as many paths as the share goes into 1 come of one.
+/// Both ways at glass are followed as long as the fainter one keeps this share, else one of them is chosen:
+/// what glass mirrors is faint but often of something bright, and would be noise. At most as many paths as
+/// the share goes into 1 come of one.
 const LEAST_SHARE: f64 = 1.0 / 1024.0;
 
 impl<'a, const C: usize> EyePath<'a, C> {
@@ -106,8 +107,8 @@ impl<'a, const C: usize> EyePath<'a, C> {
         self.killed += 1;
     }
 
-    /// Follows what goes on specularly: whether anything does. Of two ways both are followed where nothing is absorbed and both
-    /// are worth it, of which the mirrored one waits; else one of them is chosen.
+    /// Follows what goes on specularly: whether anything does. Of two ways both are followed where nothing is
+    /// absorbed and both are worth it, of which the mirrored one waits; else one of them is chosen.
     fn pass_on<R: Chooser>(
         &mut self,
         material: &Material,
@@ -196,7 +197,8 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
     sum
 }
 
-/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Area lights stand in nobody's way.
+/// Luminance towards the eye that comes straight from emitters: all of them, a shadow ray each. Area lights
+/// stand in nobody's way.
 fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, chooser: &mut R) -> [f64; 3] {
     let material = scene.material(hit.surface);
     let from = |side: Side| {
@@ -228,7 +230,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
 /// Coordinates of a point of an emitter, where it has more than one.
 #[inline]
 fn place_on<R: Chooser>(emitter: &Emitter, chooser: &mut R) -> [f64; 2] {
-    match emitter.direct_coordinates() {
+    match emitter.kind().direct_coordinates {
         0 => [0.0; 2],
         _ => [chooser.uniform(Purpose::BeamPosition), chooser.uniform(Purpose::BeamPosition)],
     }

@@ -53,7 +53,8 @@ pub(crate) fn check_memory(pixels: [u32; 2], bytes: u64) -> Result<()> {
 pub const TILE: u32 = 16;
 pub(crate) const TILE_PIXELS: usize = (TILE * TILE) as usize;
 
-/// A picture in the making: passes add to it ([`crate::picture::camera::render()`]), [`Self::finish`] makes the picture.
+/// A picture in the making: passes add to it ([`crate::picture::camera::render()`]), [`Self::finish`] makes
+/// the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sums<const C: usize> {
     pixels: [u32; 2],
@@ -82,13 +83,14 @@ impl<const C: usize> Sums<C> {
         self.pixels
     }
 
-    /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it was to have.
+    /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it
+    /// was to have.
     pub fn scale(&mut self, factor: f64) {
         self.tiles.iter_mut().for_each(|sums| sums.scale(factor));
     }
 
-    /// Takes back what the parts of a replicate that is not finished made of the picture: they are of a part of the emitters'
-    /// directions, not a sample of them.
+    /// Takes back what the parts of a replicate that is not finished made of the picture: they are of a part
+    /// of the emitters' directions, not a sample of them.
     pub fn drop_unfinished(&mut self) {
         for sums in &mut self.tiles {
             let open = sums.error.take_open();
@@ -108,8 +110,9 @@ impl<const C: usize> Sums<C> {
         &self.tiles[tile * TILE_PIXELS + (row % TILE * TILE + column % TILE) as usize]
     }
 
-    /// Estimated size of the bias of a pixel's luminance, cd/m2: the mean of what the two bandwidths say of the 3 x 3 pixels about
-    /// it. A pixel's own says nothing where the difference of the bandwidths changes its sign, and has more noise.
+    /// Estimated size of the bias of a pixel's luminance, cd/m2: the mean of what the two bandwidths say of
+    /// the 3 x 3 pixels about it. A pixel's own says nothing where the difference of the bandwidths changes
+    /// its sign, and has more noise.
     fn bias(&self, column: u32, row: u32) -> f64 {
         let own = self.at(column, row).error.bias();
         if own.is_nan() {
@@ -155,7 +158,7 @@ impl<const C: usize> Sums<C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::gather::BIAS_PER_DIFFERENCE;
+    use crate::picture::gather::{BIAS_PER_DIFFERENCE, Gathered};
 
     #[test]
     fn memory_is_told_before_it_is_taken() {
@@ -189,5 +192,31 @@ mod tests {
         sums.tiles[0] = PixelSums::UNSEEN;
         let unseen = sums.finish().bias;
         assert!(unseen[0].is_nan() && (unseen[3] / of(2.5, 3.0) - 1.0).abs() < 1e-14, "{unseen:?}");
+    }
+
+    #[test]
+    fn tiles_become_rows_and_unfinished_light_is_taken_back() {
+        let pixels = [40, 20];
+        let mut sums = Sums::<3>::new(pixels).unwrap();
+        for (i, pixel) in sums.tiles.iter_mut().enumerate() {
+            let corner = Sums::<3>::corner(pixels, i / TILE_PIXELS);
+            let k = (i % TILE_PIXELS) as u32;
+            let [column, row] = [corner[0] + k % TILE, corner[1] + k / TILE];
+            pixel.value = [f64::from(1000 * row + column), 1.0, 2.0];
+            let mut part = Gathered::new(1);
+            part.value = [0.5, 0.25, 0.125];
+            pixel.error.add(&part, 2.0, 0..1, false);
+        }
+        let value = |film: &Film<3>, [column, row]: [u32; 2]| film.value[(row * 40 + column) as usize];
+        let film = sums.finish();
+        assert_eq!(film.value.len(), 800);
+        for [column, row] in [[0, 0], [15, 15], [16, 0], [39, 19], [17, 16], [0, 16]] {
+            assert_eq!(value(&film, [column, row])[0], f64::from(1000 * row + column));
+        }
+        sums.drop_unfinished();
+        assert_eq!(value(&sums.finish(), [3, 2]), [2003.0 - 1.0, 0.5, 1.75]);
+        sums.drop_unfinished();
+        sums.scale(2.0);
+        assert_eq!(value(&sums.finish(), [3, 2]), [4004.0, 1.0, 3.5]);
     }
 }

@@ -1,7 +1,7 @@
 //! Pixel filters: where in the picture a pixel's samples lie.
 //!
-//! Samples are drawn from the filter itself by inverse functions, so that all count the same: a pixel is the mean of its
-//! samples. The densities are for those who bring light to the picture from the other end.
+//! Samples are drawn from the filter itself by inverse functions, so that all count the same: a pixel is the
+//! mean of its samples. The densities are for those who bring light to the picture from the other end.
 
 use std::f64::consts::PI;
 
@@ -67,7 +67,8 @@ mod tests {
 
     #[test]
     fn samples_have_the_moments_of_the_density() {
-        // Variance along an axis: 1/12, 1/6, and sigma^2 (1 - 9 e^-8) / (1 - e^-8) (r^2 / 2 under the cut Rayleigh law).
+        // Variance along an axis: 1/12, 1/6, and sigma^2 (1 - 9 e^-8) / (1 - e^-8) (r^2 / 2 under the cut
+        // Rayleigh law).
         let gauss = SIGMA * SIGMA * (1.0 - 9.0 * BEYOND_CUT) / (1.0 - BEYOND_CUT);
         for (filter, variance) in ALL.into_iter().zip([1.0 / 12.0, 1.0 / 6.0, gauss]) {
             let n = 512;

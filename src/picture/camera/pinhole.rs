@@ -1,7 +1,7 @@
 //! From pixels to rays and back: a pinhole, or a thin lens.
 //!
-//! Pixel (column i, row j) covers [i, i + 1) x [j, j + 1) of the picture, row 0 at the top. The picture lies at a distance of
-//! `focal_px` pixels behind the pinhole.
+//! Pixel (column i, row j) covers [i, i + 1) x [j, j + 1) of the picture, row 0 at the top. The picture lies
+//! at a distance of `focal_px` pixels behind the pinhole.
 
 use std::f64::consts::PI;
 
@@ -82,8 +82,8 @@ impl Pinhole {
         EyeRay { origin: self.position, direction: along.normalize() }
     }
 
-    /// The ray through the point of the lens that `u` stands for: all of one place in the picture meet in the plane in
-    /// focus.
+    /// The ray through the point of the lens that `u` stands for: all of one place in the picture meet in the
+    /// plane in focus.
     #[inline]
     pub fn ray_by_lens(&self, place_px: DVec2, u: [f64; 2]) -> EyeRay {
         let through_middle = self.ray(place_px);
@@ -101,8 +101,8 @@ impl Pinhole {
         self.right * (radius * cos) + self.up * (radius * sin)
     }
 
-    /// Where a point (m) is seen through the pinhole; `None` for one that is not before it. The place may lie outside the
-    /// picture.
+    /// Where a point (m) is seen through the pinhole; `None` for one that is not before it. The place may lie
+    /// outside the picture.
     #[inline]
     pub fn project(&self, point: DVec3) -> Option<Seen> {
         let to = point - self.position;

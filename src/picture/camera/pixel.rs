@@ -23,8 +23,8 @@ impl<const C: usize> PixelSums<C> {
     /// A pixel that an interrupt left unseen: black, its error and bias unknown.
     pub(crate) const UNSEEN: Self = Self { error: ErrorSums::UNKNOWN, ..Self::NOTHING };
 
-    /// Square of the standard error of the luminance: that of the photons for these samples and that of the samples for these
-    /// photons. NaN where a single replicate or a single set says nothing.
+    /// Square of the standard error of the luminance: that of the photons for these samples and that of the
+    /// samples for these photons. NaN where a single replicate or a single set says nothing.
     pub(crate) fn variance(&self, replicates: u32, sets: u32) -> f64 {
         let s = f64::from(sets);
         // The value is the sum over replicates, the mean over sets.

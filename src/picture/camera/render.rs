@@ -19,12 +19,12 @@ use super::filter;
 use super::pixel::{PixelSums, SETS};
 use super::view::View;
 
-/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not hold all of
-/// them.
+/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not
+/// hold all of them.
 #[derive(Debug, Clone)]
 pub struct Pass<'d, const C: usize> {
-    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run, so that passes add
-    /// up.
+    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run,
+    /// so that passes add up.
     pub densities: &'d [Density<'d, C>],
     /// Replicates that have photons in this pass.
     pub replicates: Range<u32>,
@@ -37,7 +37,8 @@ pub struct Pass<'d, const C: usize> {
 }
 
 impl<const C: usize> Pass<'_, C> {
-    /// Emitters and the background alone: what is left to the eye where every photon is joined to the pinhole.
+    /// Emitters and the background alone: what is left to the eye where every photon is joined to the
+    /// pinhole.
     pub const EMISSION: Self =
         Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false };
 }

@@ -1,13 +1,15 @@
-//! Light tracing to a pinhole: every photon that arrives on a scattering surface is joined to the pinhole where it sees it.
+//! Light tracing to a pinhole: every photon that arrives on a scattering surface is joined to the pinhole
+//! where it sees it.
 //!
-//! The luminance of pixel j is the mean of L over the picture plane weighted by the pixel's filter h_j (its integral over
-//! pixel units is 1). A photon of flux F that arrives at x with the weight w adds
+//! The luminance of pixel j is the mean of L over the picture plane weighted by the pixel's filter h_j (its
+//! integral over pixel units is 1). A photon of flux F that arrives at x with the weight w adds
 //!
 //!   F w f(wi, wo) cos(theta_x) / d^2   h_j(p)   (focal length in pixels)^2 / cos^3(theta_camera),
 //!
-//! d the distance of the pinhole, p the point of the picture where x is seen; the last factor is the picture's area, in
-//! pixels, per solid angle at the pinhole. There is no density estimate and so no bias. Light that is scattered last and seen by
-//! mirror or through glass is not found: no ray joins such a point to the pinhole.
+//! d the distance of the pinhole, p the point of the picture where x is seen; the last factor is the
+//! picture's area, in pixels, per solid angle at the pinhole. There is no density estimate and so no bias.
+//! Light that is scattered last and seen by mirror or through glass is not found: no ray joins such a point
+//! to the pinhole.
 //!
 //! Sums are fixed-point integers of 128 bits, added in any order with the same result.
 
@@ -31,9 +33,11 @@ use super::filter;
 use super::pinhole::Pinhole;
 use super::view::View;
 
-/// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is large.
+/// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is
+/// large.
 const FRACTION_BITS: i32 = 48;
-/// Contributions are cut at 2^60 of that: the pinhole nearer to a surface than a thousand-millionth of the scene.
+/// Contributions are cut at 2^60 of that: the pinhole nearer to a surface than a thousand-millionth of the
+/// scene.
 const MOST_CONTRIBUTION: f64 = (1u64 << 60) as f64;
 
 /// The sums of a splatted picture, for one replicate.
@@ -99,7 +103,8 @@ impl<'s, const C: usize> Splat<'s, C> {
         film::check_memory(spec.pixels, Self::memory_bytes(spec.pixels))?;
         let pixels = u64::from(spec.pixels[0]) * u64::from(spec.pixels[1]);
         let pinhole = Pinhole::new(spec);
-        // A power of two near the scene's size, so that a scene and the same scene times a power of two agree bit for bit.
+        // A power of two near the scene's size, so that a scene and the same scene times a power of two agree
+        // bit for bit.
         let (low, high) = scene.geometry.bounds();
         let size = (high - low).length().max((spec.position - low).length());
         let size = if size > 0.0 { libm::scalbn(1.0, libm::ilogb(size)) } else { 1.0 };
@@ -205,8 +210,9 @@ impl<'s, const C: usize> Splat<'s, C> {
     }
 }
 
-/// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it, whose spread says
-/// nothing: that of (photons + 1), a photon being what one would bring that arrives where the pixel's middle looks. 0 where there are enough.
+/// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it,
+/// whose spread says nothing: that of (photons + 1), a photon being what one would bring that arrives where
+/// the pixel's middle looks. 0 where there are enough.
 pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64) -> f64 {
     let one = photon_lm * of_one_lumen(view, pixel);
     let photons = luminance_cd_m2 / one;
@@ -214,8 +220,8 @@ pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64)
     if photons < FEWEST_HITS as f64 { one * (photons + 1.0).sqrt() } else { 0.0 }
 }
 
-/// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where the pixel's middle looks; 0 if
-/// nothing is there.
+/// Luminance (cd/m2) that a photon of 1 lm, arriving along the normal, brings to a pixel if it arrives where
+/// the pixel's middle looks; 0 if nothing is there.
 fn of_one_lumen(view: &View<'_>, pixel: usize) -> f64 {
     let columns = view.camera.pixels[0] as usize;
     let place = DVec2::new((pixel % columns) as f64 + 0.5, (pixel / columns) as f64 + 0.5);
@@ -241,7 +247,8 @@ fn value<const C: usize>(bsdf: &Material, hit: &Hit, wi: DVec3, wo: DVec3) -> [f
     if C == 1 { [luminance(rgb); C] } else { std::array::from_fn(|c| rgb[c]) }
 }
 
-/// Joins the arrivals of one batch to the pinhole, direct light included, and adds them to a scene's receivers.
+/// Joins the arrivals of one batch to the pinhole, direct light included, and adds them to a scene's
+/// receivers.
 #[derive(Debug)]
 pub struct SplatSink<'r, 's, const C: usize> {
     receivers: ReceiverSink<'r, 's>,

@@ -13,7 +13,7 @@ pub struct View<'s> {
     /// The scene.
     pub scene: &'s Scene,
     /// The camera.
-    pub camera: &'s Camera,
+    pub camera: Camera,
     /// Its projection.
     pub pinhole: Pinhole,
     /// The side state of rays that start at it.
@@ -26,13 +26,13 @@ pub struct View<'s> {
 const RIM: u32 = 16;
 
 impl<'s> View<'s> {
-    /// A camera in a scene. `seed` is that of the pixels' samples. Inside glass, or any closed surface, is a place like
-    /// others; the luminance is that in the medium there.
+    /// A camera in a scene. `seed` is that of the pixels' samples. Inside glass, or any closed surface, is a
+    /// place like others; the luminance is that in the medium there.
     ///
     /// # Errors
     /// A camera on a surface, where it is on neither side; a lens through which a closed surface
     /// passes.
-    pub fn new(scene: &'s Scene, camera: &'s Camera, seed: u64) -> Result<Self> {
+    pub fn new(scene: &'s Scene, camera: &Camera, seed: u64) -> Result<Self> {
         let pinhole = Pinhole::new(camera);
         let geometry = &scene.geometry;
         let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
@@ -56,6 +56,6 @@ impl<'s> View<'s> {
                 }
             }
         }
-        Ok(Self { scene, camera, pinhole, start: Whereabouts::start(behind), seed })
+        Ok(Self { scene, camera: camera.clone(), pinhole, start: Whereabouts::start(behind), seed })
     }
 }

@@ -1,8 +1,10 @@
-//! Density estimation: luminance from the photons about a point, with its spread over replicates and its bias.
+//! Density estimation: luminance from the photons about a point, with its spread over replicates and its
+//! bias.
 //!
-//! The luminance towards the eye is the sum over photons near of f(wi, wo) w photon_lm K(d), f the surface's BSDF, w the photon's
-//! weight and K a kernel of integral 1 over the part of the surface within the ball ([`crate::picture::gather::footprint`]). Photons arriving are
-//! flux per area already, so no cosine appears (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
+//! The luminance towards the eye is the sum over photons near of f(wi, wo) w photon_lm K(d), f the surface's
+//! BSDF, w the photon's weight and K a kernel of integral 1 over the part of the surface within the ball
+//! ([`crate::picture::gather::footprint`]). Photons arriving are flux per area already, so no cosine appears
+//! (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
 
 use std::sync::Arc;
 
@@ -18,11 +20,12 @@ use super::sum::Point;
 use super::surfaces::BySurface;
 use super::{SECOND, bandwidth};
 
-/// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker: Progressive Photon
-/// Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
+/// Progressive radii shrink so that r_(i+1)^2 / r_i^2 = (i + alpha) / (i + 1) (C. Knaus, M. Zwicker:
+/// Progressive Photon Mapping: A Probabilistic Approach, ACM TOG 30 (3), 2011).
 pub const PROGRESSIVE_ALPHA: f64 = 2.0 / 3.0;
 
-/// Radius that photons are sorted for where fewer lie within the bandwidth's than are wanted, in units of this.
+/// Radius that photons are sorted for where fewer lie within the bandwidth's than are wanted, in units of
+/// this.
 const COARSE: f64 = 16.0;
 
 /// How densities are made.
@@ -59,7 +62,8 @@ pub struct Density<'m, const C: usize> {
 }
 
 impl<'m, const C: usize> Density<'m, C> {
-    /// A density of this map; `photon_lm` is the flux of one photon, lm. [`Bandwidth::Automatic`] is chosen from the map.
+    /// A density of this map; `photon_lm` is the flux of one photon, lm. [`Bandwidth::Automatic`] is chosen
+    /// from the map.
     pub fn new(
         footprints: Arc<Footprints<'m>>,
         map: &'m PhotonMap<C>,
@@ -83,9 +87,10 @@ impl<'m, const C: usize> Density<'m, C> {
         Self { footprints, map, photon_lm, kernel: choice.kernel, reach }
     }
 
-    /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel, arrived on the
-    /// front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered, and those for which it is 0 tell nothing
-    /// about an error. Where there are too few to tell one it is asked for light along the normal, too.
+    /// Adds the luminance at a point of a scattering surface, times `weight`. `value_of(direction of travel,
+    /// arrived on the front)` is the surface's BSDF towards the eye, 1/sr; photons of both sides are offered,
+    /// and those for which it is 0 tell nothing about an error. Where there are too few to tell one it is
+    /// asked for light along the normal, too.
     pub fn gather(
         &self,
         at: &Hit,
@@ -96,10 +101,10 @@ impl<'m, const C: usize> Density<'m, C> {
         self.gather_of(None, at, weight, value_of, into);
     }
 
-    /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen and 0 for other, times
-    /// `weight`: photons of the other side do not count as neighbours. A pixel's samples lie close together against a wide radius:
-    /// what was gathered for one, since `into` was last cleared, serves those within an eighth of the radius on the same side of the
-    /// same surface.
+    /// Adds the luminance at a point of a surface whose BSDF is 1 for all light that arrives on the side seen
+    /// and 0 for other, times `weight`: photons of the other side do not count as neighbours. A pixel's
+    /// samples lie close together against a wide radius: what was gathered for one, since `into` was last
+    /// cleared, serves those within an eighth of the radius on the same side of the same surface.
     pub fn gather_evenly(&self, at: &Hit, weight: [f64; C], into: &mut Gathered<C>) {
         let evenly = |_, _| [1.0; C];
         let density = std::ptr::from_ref(self.map).addr();
@@ -171,4 +176,86 @@ fn progressive(radius_m: f64, replicates: u32) -> Vec<f64> {
         square *= (f64::from(i) + PROGRESSIVE_ALPHA) / (f64::from(i) + 1.0);
     }
     radii
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Geometry, Rectangle, Shape, Surface, Whereabouts};
+    use crate::picture::photon_map::record::{FRONT, pack};
+    use crate::picture::photon_map::{Frame, Photon};
+
+    fn floor() -> Geometry {
+        let shape = Shape::Rectangle(Rectangle::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap());
+        Geometry::build(vec![Surface { name: "floor".into(), shape }]).unwrap()
+    }
+
+    fn on_floor(geometry: &Geometry, x: f64) -> Hit {
+        let from = DVec3::new(x, 0.5, 1.0);
+        geometry.nearest(from, DVec3::NEG_Z, &Whereabouts::default(), &mut 0).unwrap()
+    }
+
+    /// A row of photons along x at y = 0.5, denser towards 1.
+    fn row(geometry: &Geometry, n: u32) -> PhotonMap<1> {
+        let (low, high) = geometry.bounds();
+        let frame = Frame::new(low, high);
+        let photon = |i: u32| {
+            let x = ((f64::from(i) + 0.5) / f64::from(n)).sqrt();
+            let cell = frame.cell(DVec3::new(x, 0.5, 0.0));
+            Photon { cell, direction: pack(DVec3::NEG_Z), primitive: 0, tag: i % 2 | FRONT, weight: [1.0] }
+        };
+        PhotonMap::build((0..n).map(photon).collect(), frame, 0.1)
+    }
+
+    fn evenly(density: &Density<'_, 1>, hits: &[Hit], weight: f64) -> Gathered<1> {
+        let mut sums = Gathered::new(2);
+        hits.iter().for_each(|hit| density.gather_evenly(hit, [weight], &mut sums));
+        sums
+    }
+
+    #[test]
+    fn samples_within_an_eighth_of_the_radius_share_a_place() {
+        let geometry = floor();
+        let map = row(&geometry, 1000);
+        let choice = Choice { bandwidth: Bandwidth::Radius(0.08), kernel: Kernel::Flat, replicates: 2 };
+        let density = Density::new(Arc::new(Footprints::new(&geometry)), &map, 1.0, choice);
+        let [a, near, far] = [0.5, 0.509, 0.6].map(|x| on_floor(&geometry, x));
+        let value = |hits: &[Hit]| evenly(&density, hits, 1.0).value[0];
+        let [at_a, at_near, at_far] = [a, near, far].map(|hit| value(&[hit]));
+        assert!(at_a != at_near && at_a != at_far);
+        assert_eq!(value(&[a, near]), at_a + at_a);
+        assert_eq!(value(&[near, a]), at_near + at_near);
+        assert_eq!(value(&[a, far]), at_a + at_far);
+        // By the general way, with the same BSDF, and by a weight.
+        let mut sums = Gathered::new(2);
+        density.gather(&a, [1.0], |_, front| [if front { 1.0 } else { 0.0 }], &mut sums);
+        assert_eq!(sums.value[0], at_a);
+        assert_eq!(evenly(&density, &[a, near], 0.25).value[0], 0.25 * at_a + 0.25 * at_a);
+        // Beyond the 32 places that are remembered each is gathered for itself.
+        let many: Vec<Hit> = (0..40).map(|i| on_floor(&geometry, 0.1 + 0.02 * f64::from(i))).collect();
+        let alone: f64 = many.iter().map(|hit| value(&[*hit])).sum();
+        assert!((value(&many) / alone - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn of_k_nearest_the_kth_is_the_rim_and_the_bias_a_part_of_the_light() {
+        let geometry = floor();
+        let map = row(&geometry, 1000);
+        let choice = Choice { bandwidth: Bandwidth::Nearest(20), kernel: Kernel::Flat, replicates: 2 };
+        let density = Density::new(Arc::new(Footprints::new(&geometry)), &map, 3.0, choice);
+        let at = on_floor(&geometry, 0.5);
+        let sums = evenly(&density, &[at], 1.0);
+        let mut distances: Vec<f64> =
+            map.photons().iter().map(|p| map.position(p).distance(at.position)).collect();
+        distances.sort_by(f64::total_cmp);
+        let exact = 19.0 * 3.0 / (std::f64::consts::PI * distances[19].powi(2));
+        assert!((sums.value[0] / exact - 1.0).abs() < 1e-9, "{} {exact}", sums.value[0]);
+        let wide = 39.0 * 3.0 / (std::f64::consts::PI * distances[39].powi(2));
+        assert!((sums.second[0] / wide - 1.0).abs() < 1e-9, "{} {wide}", sums.second[0]);
+        assert!((sums.nearest_bias / (sums.value[0] / 39.0) - 1.0).abs() < 1e-12);
+        assert!((sums.by_replicate.iter().sum::<f64>() / sums.value[0] - 1.0).abs() < 1e-12);
+        assert_eq!(sums.sparse, 0.0);
+        let twice = evenly(&density, &[at, at], 0.5);
+        assert!((twice.nearest_bias / sums.nearest_bias - 1.0).abs() < 1e-12);
+    }
 }

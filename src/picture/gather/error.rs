@@ -1,7 +1,7 @@
 //! Standard error and bias of a pixel's light from photons, from what is gathered pass by pass.
 //!
-//! Error: the spread of the replicates' sums, R s^2 (METHOD 7), and what places with hardly a photon owe. Bias: the difference between
-//! the two bandwidths.
+//! Error: the spread of the replicates' sums, R s^2 (METHOD 7), and what places with hardly a photon owe.
+//! Bias: the difference between the two bandwidths.
 
 use std::ops::Range;
 
@@ -10,11 +10,12 @@ use crate::surface::luminance_of;
 use super::BIAS_PER_DIFFERENCE;
 use super::gathered::Gathered;
 
-/// What is kept of the photons of a pixel from pass to pass, to tell the error and bias of its luminance; cd/m2 and its square.
+/// What is kept of the photons of a pixel from pass to pass, to tell the error and bias of its luminance;
+/// cd/m2 and its square.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorSums<const C: usize> {
-    /// Luminance at the second bandwidth less that at the first, signed: what is too dark in one pass may be too bright in
-    /// another.
+    /// Luminance at the second bandwidth less that at the first, signed: what is too dark in one pass may be
+    /// too bright in another.
     pub difference: f64,
     /// Bound on the k-NN bias ([`Gathered::nearest_bias`]).
     pub nearest_bias: f64,
@@ -41,8 +42,8 @@ impl<const C: usize> ErrorSums<C> {
     /// Error and bias that nobody knows: NaN.
     pub const UNKNOWN: Self = Self { nearest_bias: f64::NAN, sparse_square: f64::NAN, ..Self::NOTHING };
 
-    /// Adds what was gathered in a pass over photons of these replicates, each sample counting `of_sample`. Where the pass does not
-    /// finish its replicate, a later pass goes on with it.
+    /// Adds what was gathered in a pass over photons of these replicates, each sample counting `of_sample`.
+    /// Where the pass does not finish its replicate, a later pass goes on with it.
     pub fn add(&mut self, gathered: &Gathered<C>, of_sample: f64, replicates: Range<u32>, finishes: bool) {
         self.difference += (luminance_of(&gathered.second) - luminance_of(&gathered.value)) * of_sample;
         self.nearest_bias += gathered.nearest_bias * of_sample;
@@ -64,8 +65,8 @@ impl<const C: usize> ErrorSums<C> {
         std::mem::replace(&mut self.open, [0.0; C])
     }
 
-    /// Square of the standard error of the luminance, given the bandwidth, after so many whole replicates; NaN where a single one
-    /// says nothing.
+    /// Square of the standard error of the luminance, given the bandwidth, after so many whole replicates;
+    /// NaN where a single one says nothing.
     pub fn variance(&self, replicates: u32) -> f64 {
         let r = f64::from(replicates);
         let of_photons = match replicates {
@@ -90,5 +91,28 @@ impl<const C: usize> ErrorSums<C> {
         for square in [&mut self.photons_square, &mut self.sparse_square] {
             *square *= factor * factor;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bias_is_the_difference_of_all_passes_and_what_neighbours_owe() {
+        let mut sums = ErrorSums::<1>::NOTHING;
+        let pass = |value, second, nearest_bias, sparse| {
+            let mut gathered = Gathered::<1>::new(1);
+            (gathered.value, gathered.second) = ([value], [second]);
+            (gathered.nearest_bias, gathered.sparse) = (nearest_bias, sparse);
+            gathered
+        };
+        sums.add(&pass(10.0, 7.0, 1.0, 3.0), 0.5, 0..1, true);
+        assert!((sums.bias() - (1.5 * BIAS_PER_DIFFERENCE + 0.5)).abs() < 1e-14);
+        // What one pass sees too dark and the other too bright cancels; what neighbours owe does not.
+        sums.add(&pass(10.0, 13.0, 1.0, 4.0), 0.5, 0..1, true);
+        assert_eq!(sums.bias(), 1.0);
+        assert_eq!(sums.sparse_square, 1.5 * 1.5 + 2.0 * 2.0);
+        assert!(ErrorSums::<3>::UNKNOWN.bias().is_nan() && ErrorSums::<3>::UNKNOWN.variance(4).is_nan());
     }
 }

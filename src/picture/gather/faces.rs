@@ -1,8 +1,8 @@
 //! The faces of one surface, searched by place: how much of a kernel a mesh holds within a ball.
 //!
-//! A binary tree by the median of the middles. A node knows the area of its faces and the first two moments of it, and how far
-//! its normals turn, so that what lies wholly within the ball is one look-up whatever the number of faces, and only those at its
-//! rim are taken one by one.
+//! A binary tree by the median of the middles. A node knows the area of its faces and the first two moments
+//! of it, and how far its normals turn, so that what lies wholly within the ball is one look-up whatever the
+//! number of faces, and only those at its rim are taken one by one.
 
 use glam::DVec3;
 
@@ -18,7 +18,8 @@ const LEAF: usize = 4;
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// Area (m2), its first moment about the box's middle, and the integral of the squared distance from there.
+    /// Area (m2), its first moment about the box's middle, and the integral of the squared distance from
+    /// there.
     area: f64,
     first: DVec3,
     second: f64,
@@ -65,7 +66,8 @@ impl FaceTree {
         self.normal(face).dot(normal) > LEAST_COSINE
     }
 
-    /// Integral of a kernel of this radius (m) about `centre` over the faces turned less than 60 degrees from `normal`.
+    /// Integral of a kernel of this radius (m) about `centre` over the faces turned less than 60 degrees from
+    /// `normal`.
     pub fn integral(&self, kernel: Kernel, centre: DVec3, normal: DVec3, radius_m: f64) -> f64 {
         let mut stack = [0u32; 64];
         let mut depth = usize::from(!self.nodes.is_empty());
@@ -103,7 +105,8 @@ impl FaceTree {
 
     fn face_integral(&self, kernel: Kernel, centre: DVec3, radius_m: f64, face: usize) -> f64 {
         let corners = self.triangles[face].map(|v| (v - centre) / radius_m);
-        // Of a sliver the facet's normal is known only as well as its coordinates allow; what it adds is as small.
+        // Of a sliver the facet's normal is known only as well as its coordinates allow; what it adds is as
+        // small.
         kernel.over_polygon(&corners, normal_of(&corners))
     }
 

@@ -1,8 +1,8 @@
 //! What of a surface counts as the neighbourhood of a point: which photons, and how much of the kernel.
 //!
-//! Only photons on the same surface, where it is turned less than 60 degrees from the point's own normal; the kernel is
-//! divided by its integral over that same part of the surface within the ball. So no light comes through a thin wall or round a
-//! corner, and a rectangle has no dark rim.
+//! Only photons on the same surface, where it is turned less than 60 degrees from the point's own normal; the
+//! kernel is divided by its integral over that same part of the surface within the ball. So no light comes
+//! through a thin wall or round a corner, and a rectangle has no dark rim.
 
 use std::sync::OnceLock;
 
@@ -13,7 +13,8 @@ use crate::scene::camera::Kernel;
 
 use super::faces::{FaceTree, LEAST_COSINE};
 
-/// The surfaces of a scene as density estimation sees them. What a mesh needs is made when it is first asked for.
+/// The surfaces of a scene as density estimation sees them. What a mesh needs is made when it is first asked
+/// for.
 #[derive(Debug)]
 pub struct Footprints<'g> {
     geometry: &'g Geometry,
@@ -123,8 +124,8 @@ impl Footprint<'_> {
         }
     }
 
-    /// Integral of a kernel of this radius (m) over the neighbourhood: 1 where it is flat, or a sphere, and wide enough.
-    /// Exact for rectangles, spheres and meshes; of a paraboloid see the source. Never 0.
+    /// Integral of a kernel of this radius (m) over the neighbourhood: 1 where it is flat, or a sphere, and
+    /// wide enough. Exact for rectangles, spheres and meshes; of a paraboloid see the source. Never 0.
     pub fn integral(&self, kernel: Kernel, radius_m: f64) -> f64 {
         let of_all = match self.part {
             Part::Rectangle(r) => over_rectangle(r, kernel, self.centre, radius_m),
@@ -135,12 +136,14 @@ impl Footprint<'_> {
             Part::Paraboloid(p, faces) => self.over_paraboloid(p, faces, kernel, radius_m),
             Part::Mesh(faces) => faces.integral(kernel, self.centre, self.normal, radius_m),
         };
-        // The point lies on its surface but for rounding; a radius within that rounding has no neighbourhood to speak of.
+        // The point lies on its surface but for rounding; a radius within that rounding has no neighbourhood
+        // to speak of.
         if of_all > 0.0 { of_all } else { 1.0 }
     }
 
-    /// Away from the rim, and for radii small against the focal length, 1: of a surface of principal curvatures a and b a
-    /// small ball cuts pi r^2 (1 + r^2 (a - b)^2 / 32 + ...), here within 0.05 %. Elsewhere the bowl is taken as facets.
+    /// Away from the rim, and for radii small against the focal length, 1: of a surface of principal
+    /// curvatures a and b a small ball cuts pi r^2 (1 + r^2 (a - b)^2 / 32 + ...), here within 0.05 %.
+    /// Elsewhere the bowl is taken as facets.
     fn over_paraboloid(
         &self,
         bowl: &Paraboloid,

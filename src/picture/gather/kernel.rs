@@ -1,7 +1,8 @@
 //! Kernels of density estimation, and their integrals over what is left of a surface within the ball.
 //!
-//! A kernel is K(d) = k(d^2 / r^2) / (pi r^2), a function of the distance d in space, with the integral 1 over a plane disc of
-//! radius r. A ball cuts of a sphere exactly the area pi r^2, evenly in d^2: there the integral is 1 as well, for any such k.
+//! A kernel is K(d) = k(d^2 / r^2) / (pi r^2), a function of the distance d in space, with the integral 1
+//! over a plane disc of radius r. A ball cuts of a sphere exactly the area pi r^2, evenly in d^2: there the
+//! integral is 1 as well, for any such k.
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -27,7 +28,8 @@ impl Kernel {
         }
     }
 
-    /// Integral of k^2 over the disc, over (pi r^2)^2: the variance of n independent photons is n times this over pi r^2.
+    /// Integral of k^2 over the disc, over (pi r^2)^2: the variance of n independent photons is n times this
+    /// over pi r^2.
     pub fn roughness(self) -> f64 {
         match self {
             Self::Flat => 1.0,
@@ -35,12 +37,14 @@ impl Kernel {
         }
     }
 
-    /// The kernel's integral over a flat convex or concave polygon, by Green's theorem: exact. `corners` in the plane of
-    /// the unit vector `normal`, right-handed about it, relative to the ball's centre in units of its radius.
+    /// The kernel's integral over a flat convex or concave polygon, by Green's theorem: exact. `corners` in
+    /// the plane of the unit vector `normal`, right-handed about it, relative to the ball's centre in units
+    /// of its radius.
     ///
-    /// With p the centre's foot in the plane, an edge adds the integral over the triangle of p and the edge: in polar coordinates
-    /// about p the integral along a ray is a polynomial in its length, and becomes one in the place t along the edge, since
-    /// dphi = h dt / (h^2 + t^2), h the distance of the edge from p. Beyond the disc only the angle counts.
+    /// With p the centre's foot in the plane, an edge adds the integral over the triangle of p and the edge:
+    /// in polar coordinates about p the integral along a ray is a polynomial in its length, and becomes one
+    /// in the place t along the edge, since dphi = h dt / (h^2 + t^2), h the distance of the edge from p.
+    /// Beyond the disc only the angle counts.
     pub fn over_polygon(self, corners: &[DVec3], normal: DVec3) -> f64 {
         let Some(last) = corners.last() else { return 0.0 };
         let height = last.dot(normal);
@@ -65,8 +69,8 @@ impl Kernel {
         sum
     }
 
-    /// The kernel's integral over a flat face that lies wholly within the ball: area, and mean of d^2 over the face, both
-    /// in units of the radius.
+    /// The kernel's integral over a flat face that lies wholly within the ball: area, and mean of d^2 over
+    /// the face, both in units of the radius.
     #[inline]
     pub fn over_whole(self, area: f64, mean_d2: f64) -> f64 {
         area * FRAC_1_PI * self.shape(mean_d2)

@@ -14,8 +14,8 @@ use super::gathered::Gathered;
 use super::kernel::disc_m2;
 use super::surfaces::{BySurface, Wanted};
 
-/// A point that light is gathered at. `F` is the surface's BSDF towards the eye: (direction of travel, arrived on the front) ->
-/// 1/sr.
+/// A point that light is gathered at. `F` is the surface's BSDF towards the eye: (direction of travel,
+/// arrived on the front) -> 1/sr.
 pub(crate) struct Point<'a, const C: usize, F> {
     pub map: &'a PhotonMap<C>,
     /// Flux of one photon, lm.
@@ -77,15 +77,16 @@ impl<const C: usize, F: FnMut(DVec3, bool) -> [f64; C]> Point<'_, C, F> {
             let brings = self.add(photon, [t, t / (SECOND * SECOND)], heights[set], into);
             hits += u64::from(brings && t < 1.0);
         });
-        // Of several radii the narrowest has the highest kernel: what one photon owes is never less than what it would bring.
+        // Of several radii the narrowest has the highest kernel: what one photon owes is never less than what
+        // it would bring.
         let height = heights.iter().fold(0.0, |most: f64, [first, _]| most.max(*first));
         into.room.heights = heights;
         Found { hits, height }
     }
 
-    /// The k nearest photons. That at the distance r_k itself is left out: given r_k the k - 1 within are evenly spread, so
-    /// (k - 1) / (pi r_k^2) is unbiased for independent photons, with any kernel. `area_m2` is asked for where
-    /// the surface has none.
+    /// The k nearest photons. That at the distance r_k itself is left out: given r_k the k - 1 within are
+    /// evenly spread, so (k - 1) / (pi r_k^2) is unbiased for independent photons, with any kernel. `area_m2`
+    /// is asked for where the surface has none.
     #[inline]
     pub fn sum_nearest(
         &mut self,
@@ -146,8 +147,8 @@ impl<const C: usize, F: FnMut(DVec3, bool) -> [f64; C]> Point<'_, C, F> {
         f != [0.0; C]
     }
 
-    /// Adds the error that is owed where too few photons brought something for their spread to say anything: that of one photon
-    /// more, along the normal, on the side of those that count that shows it brighter.
+    /// Adds the error that is owed where too few photons brought something for their spread to say anything:
+    /// that of one photon more, along the normal, on the side of those that count that shows it brighter.
     #[inline]
     pub fn owe(&mut self, found: Found, into: &mut Gathered<C>) {
         if found.hits >= FEWEST_HITS {

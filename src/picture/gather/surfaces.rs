@@ -1,6 +1,7 @@
 //! The photons of a map by surface and side, for searches of the nearest.
 //!
-//! Where a surface, or a side of it, has few photons, a search for some of them must not go through the many of another.
+//! Where a surface, or a side of it, has few photons, a search for some of them must not go through the many
+//! of another.
 
 use crate::picture::photon_map::{Photon, PhotonMap, by_distance};
 
@@ -15,7 +16,8 @@ enum Side<const C: usize> {
     Some(PhotonMap<C>),
 }
 
-/// A map's photons by surface and side (back, front). No photon is copied where all lie on one side of one surface.
+/// A map's photons by surface and side (back, front). No photon is copied where all lie on one side of one
+/// surface.
 #[derive(Debug)]
 pub(crate) struct BySurface<const C: usize> {
     sides: Vec<[Side<C>; 2]>,
@@ -98,7 +100,8 @@ impl<const C: usize> BySurface<C> {
         &self.side(map, surface, found.front).photons()[found.place as usize]
     }
 
-    /// Of the photons in a footprint on a surface, of one side or (`None`) of both, those wanted, the nearest first.
+    /// Of the photons in a footprint on a surface, of one side or (`None`) of both, those wanted, the nearest
+    /// first.
     pub fn nearest(
         &self,
         map: &PhotonMap<C>,
@@ -134,8 +137,8 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// The radius that a search begins with, m: a little more than the last time, pixels being neighbours; never so much that a
-    /// dense place is read in vain.
+    /// The radius that a search begins with, m: a little more than the last time, pixels being neighbours;
+    /// never so much that a dense place is read in vain.
     fn first_m<const C: usize>(&self, map: &PhotonMap<C>) -> f64 {
         let guess_m = if self.guess_m > 0.0 { self.guess_m } else { map.built_for_m() };
         if self.sought_m > 0.0 { (1.1 * self.sought_m).min(2.0 * guess_m) } else { guess_m }

@@ -1,9 +1,10 @@
-//! The passes of a picture from photon maps: photons are kept up to the camera's memory, shown to the camera, dropped.
+//! The passes of a picture from photon maps: photons are kept up to the camera's memory, shown to the camera,
+//! dropped.
 //!
-//! Photons are accepted range by range of a replicate's indices; a range is a power of two where memory decides it, so that
-//! it is a net by itself. How many photons a range will leave is foretold from those before it. Where that fails the store
-//! is full before the range ends: receivers have counted it, its photons are dropped, and it is traced again in halves for
-//! the camera alone.
+//! Photons are accepted range by range of a replicate's indices; a range is a power of two where memory
+//! decides it, so that it is a net by itself. How many photons a range will leave is foretold from those
+//! before it. Where that fails the store is full before the range ends: receivers have counted it, its
+//! photons are dropped, and it is traced again in halves for the camera alone.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -18,22 +19,8 @@ use crate::scene::camera::{Camera, Method};
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
+use super::budget::{Budget, capacity};
 use super::eye::{Batch, Eye, Seeing};
-
-/// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
-const fn bytes_of_photon<const C: usize>() -> u64 {
-    2 * size_of::<Photon<C>>() as u64 + 8
-}
-
-/// Most photons that the camera has memory for at a time.
-pub(crate) fn capacity<const C: usize>(camera: &Camera) -> usize {
-    usize::try_from(camera.photon_memory_bytes / bytes_of_photon::<C>()).unwrap_or(usize::MAX).max(1)
-}
-
-/// What photons may leave above what is foretold: an eighth and some, so that few ranges are traced twice.
-fn with_reserve(photons: f64) -> f64 {
-    1.125 * photons + 1024.0
-}
 
 /// Photons on their way into a picture.
 pub(crate) struct Collector<'a, const C: usize> {
@@ -42,13 +29,8 @@ pub(crate) struct Collector<'a, const C: usize> {
     watch: Watch<'a>,
     eye: Eye<'a, C>,
     store: PhotonStore<C>,
-    /// Most photons at a time.
-    capacity: usize,
+    budget: Budget,
     held: Kept<C>,
-    held_photons: usize,
-    /// Photons traced, of which some were kept.
-    traced: u64,
-    kept: u64,
     /// Replicates of `held`: whole ones, or a part of one.
     held_of: Range<u32>,
     /// Whether the last of them is whole.
@@ -60,8 +42,6 @@ pub(crate) struct Collector<'a, const C: usize> {
     passes: u32,
     /// Whether the last pass was of a part of a replicate that is to go on.
     open: bool,
-    /// Whether all photons are to be handed out; no longer once they are more than there is room for.
-    keep: bool,
     camera_s: f64,
 }
 
@@ -72,7 +52,7 @@ impl<'a, const C: usize> Collector<'a, C> {
     /// A camera that cannot see, or whose pixels need too much memory.
     pub(crate) fn new(
         scene: &'a Scene,
-        camera: &'a Camera,
+        camera: &Camera,
         plan: &Plan,
         keep: bool,
         watch: Watch<'a>,
@@ -83,23 +63,20 @@ impl<'a, const C: usize> Collector<'a, C> {
             watch,
             eye: Eye::new(scene, camera, plan, watch)?,
             store: PhotonStore::new(scene),
-            capacity: capacity::<C>(camera),
+            budget: Budget::new(capacity::<C>(camera), keep),
             held: Kept::default(),
-            held_photons: 0,
-            traced: 0,
-            kept: 0,
             held_of: 0..0,
             whole: true,
             replicates: 0,
             planned: plan.photons(),
             passes: 0,
             open: false,
-            keep,
             camera_s: 0.0,
         })
     }
 
-    /// Takes a tracer on to photon number `end`, in as many ranges as memory asks for. An incomplete one is not accepted.
+    /// Takes a tracer on to photon number `end`, in as many ranges as memory asks for. An incomplete one is
+    /// not accepted.
     ///
     /// # Errors
     /// Those of tracing, and of a pass.
@@ -113,17 +90,17 @@ impl<'a, const C: usize> Collector<'a, C> {
         let mut all = Traced::new(self.scene);
         let (n, from) = (self.plan.photons_per_replicate(), tracer.photons());
         // A pass is of whole replicates or of a part of one: the camera's error comes from whole ones.
-        if tracer.replicate() > 0 && from == 0 && self.foretold(n) > self.room() {
+        if tracer.replicate() > 0 && from == 0 && self.budget.foretold(n) > self.budget.room() {
             self.pass_unless_empty()?;
         }
         while tracer.photons() < end && all.complete {
-            let to = self.next_end(tracer.photons(), end);
-            if self.foretold(to - tracer.photons()) > self.room() {
+            let to = self.budget.next_end(tracer.photons(), end);
+            if self.budget.foretold(to - tracer.photons()) > self.budget.room() {
                 self.pass_unless_empty()?;
             }
             let before = *tracer;
-            let most = self.room();
-            let (traced, kept) = self.range(tracer, to, most, receivers, carried)?;
+            let most = self.budget.room();
+            let (traced, kept) = self.range(tracer, to, most, receivers, carried, self.watch.photons)?;
             all.merge(&traced);
             match kept {
                 _ if !traced.complete => {}
@@ -141,34 +118,8 @@ impl<'a, const C: usize> Collector<'a, C> {
         if self.held_of.is_empty() {
             return Ok(());
         }
-        self.keep = false;
+        self.budget.keep = false;
         self.pass(false).map(|_| ())
-    }
-
-    /// Where the next range ends: at `end`, or where as many photons as there is memory for are to be expected.
-    fn next_end(&self, from: u64, end: u64) -> u64 {
-        let mut length = end - from;
-        if self.foretold(length) <= self.capacity {
-            return end;
-        }
-        length = length.next_power_of_two();
-        while length > 1 && self.foretold(length) > self.capacity {
-            length /= 2;
-        }
-        end.min((from / length + 1) * length)
-    }
-
-    /// Photons that so many traced ones are likely to leave; 0 while nothing is known, and where all are kept if they can be:
-    /// only that they cannot is a reason then.
-    fn foretold(&self, photons: u64) -> usize {
-        if self.traced == 0 || self.keep {
-            return 0;
-        }
-        with_reserve(photons as f64 * (self.kept as f64 / self.traced as f64)) as usize
-    }
-
-    fn room(&self) -> usize {
-        self.capacity.saturating_sub(self.held_photons)
     }
 
     fn range<T: Channels<C>>(
@@ -178,11 +129,12 @@ impl<'a, const C: usize> Collector<'a, C> {
         most: usize,
         receivers: &Receivers<'_>,
         carried: T,
+        progress: &(dyn Fn(u64) + Sync),
     ) -> Result<(Traced, Option<Kept<C>>)> {
         self.store.limit(most);
         let replicate = tracer.replicate();
         let sink = || self.store.sink(receivers.sink(), replicate);
-        let traced = tracer.trace_into(to, carried, sink, self.watch.interrupt, self.watch.photons)?;
+        let traced = tracer.trace_into(to, carried, sink, self.watch.interrupt, progress)?;
         Ok((traced, self.store.take()))
     }
 
@@ -190,11 +142,11 @@ impl<'a, const C: usize> Collector<'a, C> {
     fn accept(&mut self, kept: Kept<C>, before: &Tracer<'_>, to: u64) {
         let replicate = before.replicate();
         for (held, kept) in self.held.iter_mut().zip(kept) {
-            self.held_photons += kept.iter().map(Vec::len).sum::<usize>();
-            self.kept += kept.iter().map(|block| block.len() as u64).sum::<u64>();
+            self.budget.held += kept.iter().map(Vec::len).sum::<usize>();
+            self.budget.kept += kept.iter().map(|block| block.len() as u64).sum::<u64>();
             held.extend(kept);
         }
-        self.traced += to - before.photons();
+        self.budget.traced += to - before.photons();
         if self.held_of.is_empty() {
             self.held_of.start = replicate;
         }
@@ -203,69 +155,62 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.replicates = self.replicates.max(replicate + 1);
     }
 
-    /// A range that left more photons than there was room for, traced for the camera alone: at once where the room was
-    /// what others left, else in halves.
+    /// A range that left more photons than there was room for, traced for the camera alone: at once where the
+    /// room was what others left, else in halves.
     fn again<T: Channels<C>>(&mut self, before: Tracer<'_>, to: u64, carried: T) -> Result<()> {
-        let had_all_room = self.held_photons == 0;
+        let had_all_room = self.budget.held == 0;
         self.pass_unless_empty()?;
         let nobody = Receivers::new(&self.scene.geometry, &[]);
-        let silent = Watch { photons: &|_| {}, ..self.watch };
-        let watch = std::mem::replace(&mut self.watch, silent);
         let mut tracer = before;
         let mut length = to - before.photons();
         if had_all_room && length > 1 {
             length = length.next_power_of_two() / 2;
         }
-        let mut result = Ok(());
-        while result.is_ok() && tracer.photons() < to {
+        while tracer.photons() < to {
             let from = tracer;
             let part = to.min((from.photons() / length + 1) * length);
             // What one photon leaves is kept, however much it is.
-            let most = if length == 1 { usize::MAX } else { self.room() };
-            result = match self.range(&mut tracer, part, most, &nobody, carried) {
-                Err(e) => Err(e),
-                Ok((traced, _)) if !traced.complete => break,
-                Ok((_, Some(kept))) => {
-                    self.accept(kept, &from, part);
-                    Ok(())
-                }
-                Ok((_, None)) => self.again(from, part, carried),
-            };
+            let most = if length == 1 { usize::MAX } else { self.budget.room() };
+            match self.range(&mut tracer, part, most, &nobody, carried, &|_| {})? {
+                (traced, _) if !traced.complete => break,
+                (_, Some(kept)) => self.accept(kept, &from, part),
+                (_, None) => self.again(from, part, carried)?,
+            }
         }
-        self.watch = watch;
-        result
+        Ok(())
     }
 
-    /// Takes the photons of another run of the scene for its own; [`crate::picture::check_saved`] has passed them.
+    /// Takes the photons of another run of the scene for its own; [`crate::picture::check_saved`] has passed
+    /// them.
     pub(crate) fn adopt(&mut self, saved: SavedMap<C>) {
         self.planned = saved.photons_traced;
         self.replicates = saved.replicates;
         (self.held_of, self.whole) = (0..saved.replicates, true);
-        self.traced = saved.photons_traced;
-        self.kept = saved.photons.len() as u64;
-        self.held_photons = saved.photons.len();
+        self.budget.traced = saved.photons_traced;
+        self.budget.kept = saved.photons.len() as u64;
+        self.budget.held = saved.photons.len();
         let (scattered, not): (Vec<_>, Vec<_>) = saved.photons.into_iter().partition(Photon::is_scattered);
         self.held = [vec![not], vec![scattered]];
     }
 
-    /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that of the run as
-    /// planned. Light that no photon brings is seen in the last pass.
+    /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that
+    /// of the run as planned. Light that no photon brings is seen in the last pass.
     fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
         let started = Instant::now();
         if last {
             self.drop_unfinished();
         }
         let flux_lm = self.scene.emitters.flux_lm();
-        let exact_lm = flux_lm / self.traced.max(1) as f64;
+        let exact_lm = flux_lm / self.budget.traced.max(1) as f64;
         let planned_lm = flux_lm / self.planned.max(1) as f64;
         let photon_lm = if last { exact_lm } else { planned_lm };
         if last && self.passes > 0 && exact_lm != planned_lm {
             // An interrupted run: earlier passes took a photon for less than it turned out to be.
             self.eye.scale(exact_lm / planned_lm);
         }
-        let in_pass = std::mem::take(&mut self.held_photons) as f64;
+        let in_pass = std::mem::take(&mut self.budget.held) as f64;
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
-        let part = if self.kept == 0 { 1.0 } else { in_pass / self.kept as f64 };
+        let part = if self.budget.kept == 0 { 1.0 } else { in_pass / self.budget.kept as f64 };
         let maps = self.eye.add(Batch {
             photons: std::mem::take(&mut self.held),
             frame: self.store.frame(),
@@ -278,20 +223,20 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.open = !self.whole;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
-        Ok(self.keep.then(|| maps.each_ref().map(PhotonMap::photons).concat()))
+        Ok(self.budget.keep.then(|| maps.each_ref().map(PhotonMap::photons).concat()))
     }
 
-    /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions, not a sample of
-    /// them. Of the first replicate, without which there is nothing, what is finished stays.
+    /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions,
+    /// not a sample of them. Of the first replicate, without which there is nothing, what is finished stays.
     fn drop_unfinished(&mut self) {
         if self.whole || self.replicates < 2 {
             return;
         }
         self.eye.drop_unfinished();
         self.held = Kept::default();
-        (self.held_photons, self.held_of) = (0, 0..0);
+        (self.budget.held, self.held_of) = (0, 0..0);
         self.replicates -= 1;
-        self.traced = u64::from(self.replicates) * self.plan.photons_per_replicate();
+        self.budget.traced = u64::from(self.replicates) * self.plan.photons_per_replicate();
         (self.whole, self.open) = (true, false);
     }
 
@@ -304,9 +249,9 @@ impl<'a, const C: usize> Collector<'a, C> {
         let photons = kept.map(|photons| SavedMap {
             scene_hash: hash_of_photons(self.scene, &self.plan),
             settings: settings_of(&self.plan),
-            photons_traced: self.traced,
+            photons_traced: self.budget.traced,
             replicates: self.replicates,
-            photon_lm: self.scene.emitters.flux_lm() / self.traced.max(1) as f64,
+            photon_lm: self.scene.emitters.flux_lm() / self.budget.traced.max(1) as f64,
             frame: self.store.frame(),
             photons,
         });
@@ -314,9 +259,9 @@ impl<'a, const C: usize> Collector<'a, C> {
         let cost = Cost::of(&film);
         let summary = PictureSummary {
             method: Method::Map,
-            photons: self.traced,
+            photons: self.budget.traced,
             replicates: self.replicates,
-            photons_kept: self.kept,
+            photons_kept: self.budget.kept,
             passes: self.passes,
             bandwidth: Some(bandwidths),
             eye_paths_killed: killed,

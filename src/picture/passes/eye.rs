@@ -1,7 +1,7 @@
 //! What a run asks of the camera: to add what it sees of a pass, and to make a film of the sums.
 //!
-//! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error comes from whole
-//! ones.
+//! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error
+//! comes from whole ones.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -75,7 +75,7 @@ impl<'a, const C: usize> Eye<'a, C> {
     ///
     /// # Errors
     /// A camera that cannot see; a picture that takes too much memory.
-    pub(crate) fn new(scene: &'a Scene, camera: &'a Camera, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
+    pub(crate) fn new(scene: &'a Scene, camera: &Camera, plan: &Plan, watch: Watch<'a>) -> Result<Self> {
         Ok(Self {
             view: View::new(scene, camera, plan.seed())?,
             watch,
@@ -88,10 +88,10 @@ impl<'a, const C: usize> Eye<'a, C> {
         })
     }
 
-    /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates; `None` where there
-    /// is nothing to choose from.
+    /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates;
+    /// `None` where there is nothing to choose from.
     fn choose(&self, map: &PhotonMap<C>, part: f64, replicates: u32) -> Option<Settled> {
-        let camera = self.view.camera;
+        let camera = &self.view.camera;
         let mut bandwidth = camera.bandwidth;
         let mut chosen = Chosen { radius_m: None, neighbours: None };
         match bandwidth {
@@ -121,7 +121,8 @@ impl<'a, const C: usize> Eye<'a, C> {
         }
     }
 
-    /// The map of a batch's photons sorted for the bandwidth of their density, which they settle if nothing has.
+    /// The map of a batch's photons sorted for the bandwidth of their density, which they settle if nothing
+    /// has.
     fn map_of(&mut self, density: usize, photons: Vec<Photon<C>>, batch: &Batch<C>) -> PhotonMap<C> {
         let settled = self.bandwidths[density];
         let radius_m = self.radius_to_sort_for_m(settled);
@@ -166,7 +167,8 @@ impl<'a, const C: usize> Eye<'a, C> {
         Ok(maps)
     }
 
-    /// Adds emitters and background as seen directly, by mirrors and through glass, without light on surfaces.
+    /// Adds emitters and background as seen directly, by mirrors and through glass, without light on
+    /// surfaces.
     pub(crate) fn add_emitters(&mut self) -> Result<()> {
         self.look(&Pass::EMISSION, true)
     }
@@ -181,7 +183,8 @@ impl<'a, const C: usize> Eye<'a, C> {
         self.sums.drop_unfinished();
     }
 
-    /// Ctrl-C while tracing: stop tracing, render what has been traced. Ctrl-C while rendering the last pass: stop.
+    /// Ctrl-C while tracing: stop tracing, render what has been traced. Ctrl-C while rendering the last pass:
+    /// stop.
     fn look(&mut self, pass: &Pass<'_, C>, last: bool) -> Result<()> {
         let [columns, rows] = self.sums.pixels().map(u64::from);
         let done = AtomicU64::new(0);

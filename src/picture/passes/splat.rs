@@ -67,7 +67,8 @@ pub(crate) fn trace<const C: usize, T: Channels<C>>(
     Ok((outcome, Picture { film, summary, photons: None }))
 }
 
-/// The film of the eye's paths with the splats added to its pixels; there is no bias. Pixels that an interrupt left unseen stay so.
+/// The film of the eye's paths with the splats added to its pixels; there is no bias. Pixels that an
+/// interrupt left unseen stay so.
 fn with_splats<const C: usize>(
     mut film: Film<C>,
     moments: &SplatMoments<C>,

@@ -1,12 +1,13 @@
 //! Photons kept where they arrived: what density estimation and the camera read.
 //!
-//! A photon is kept at each arrival on a surface that scatters (Lambertian or tabulated) except the first when no event
-//! preceded it: that light is direct, and the camera finds it by shadow rays.
+//! A photon is kept at each arrival on a surface that scatters (Lambertian or tabulated) except the first
+//! when no event preceded it: that light is direct, and the camera finds it by shadow rays.
 //!
-//! The structure is the order of the photons itself: rows of cells, sorted along the row, so that a search reads a few
-//! runs of neighbours, found by bisection. It holds nothing but the photons (28 bytes of one channel, 36 of three) and a
-//! guide of 12 bytes for every 64 of them. Empty cells cost nothing, so neither stray photons far away nor a radius that is
-//! small against the scene do; a search for another radius than the map was built for gives the same answer, slower.
+//! The structure is the order of the photons itself: rows of cells, sorted along the row, so that a search
+//! reads a few runs of neighbours, found by bisection. It holds nothing but the photons (28 bytes of one
+//! channel, 36 of three) and a guide of 12 bytes for every 64 of them. Empty cells cost nothing, so neither
+//! stray photons far away nor a radius that is small against the scene do; a search for another radius than
+//! the map was built for gives the same answer, slower.
 
 mod saved;
 mod order;
@@ -39,8 +40,9 @@ pub struct PhotonMap<const C: usize> {
 }
 
 impl<const C: usize> PhotonMap<C> {
-    /// Sorts photons for searches of about this radius (m); one that is not positive: for a guess from the number of photons
-    /// and their bounds. The same bits for any order of `photons` and any number of threads.
+    /// Sorts photons for searches of about this radius (m); one that is not positive: for a guess from the
+    /// number of photons and their bounds. The same bits for any order of `photons` and any number of
+    /// threads.
     pub fn build(mut photons: Vec<Photon<C>>, frame: Frame, radius_m: f64) -> Self {
         photons.shrink_to_fit();
         let built_for_m = if radius_m > 0.0 { radius_m } else { guessed_radius(&photons, &frame) };
@@ -78,7 +80,8 @@ impl<const C: usize> PhotonMap<C> {
         self.frame.position(photon.cell)
     }
 
-    /// Calls `take(photon, squared distance)` for every photon nearer than `radius_m` to `centre`, in the map's order.
+    /// Calls `take(photon, squared distance)` for every photon nearer than `radius_m` to `centre`, in the
+    /// map's order.
     #[inline]
     pub fn within(&self, centre: DVec3, radius_m: f64, mut take: impl FnMut(&Photon<C>, f64)) {
         self.visit(centre, radius_m, |_, photon, d2| {
@@ -87,7 +90,8 @@ impl<const C: usize> PhotonMap<C> {
         });
     }
 
-    /// Whether `accept` takes so many photons nearer than `radius_m` to `centre`. No more are looked at than that takes.
+    /// Whether `accept` takes so many photons nearer than `radius_m` to `centre`. No more are looked at than
+    /// that takes.
     #[inline]
     pub fn has_within(
         &self,
@@ -104,7 +108,7 @@ impl<const C: usize> PhotonMap<C> {
         number >= least
     }
 
-    /// The same until `take` says that it has enough.
+    /// Calls `take(place, photon, squared distance)` in the map's order until it gives false.
     #[inline]
     fn visit(&self, centre: DVec3, radius_m: f64, mut take: impl FnMut(usize, &Photon<C>, f64) -> bool) {
         let r2 = radius_m * radius_m;
@@ -158,9 +162,9 @@ impl<const C: usize> PhotonMap<C> {
         }
     }
 
-    /// Of the photons that `accept` takes, the `k` nearest (all, where there are no more than `k`): squared distance (m2) and
-    /// place in [`PhotonMap::photons`]; the last is the farthest, the others stand in no order. The search begins within
-    /// `guess_m` and doubles until there are enough or all have been seen.
+    /// Of the photons that `accept` takes, the `k` nearest (all, where there are no more than `k`): squared
+    /// distance (m2) and place in [`PhotonMap::photons`]; the last is the farthest, the others stand in no
+    /// order. The search begins within `guess_m` and doubles until there are enough or all have been seen.
     pub fn nearest(
         &self,
         centre: DVec3,
@@ -223,7 +227,8 @@ impl<const C: usize> PhotonMap<C> {
     }
 }
 
-/// Distance, then place, as one integer: squares are not negative, and bits of such numbers stand in their order.
+/// Distance, then place, as one integer: squares are not negative, and bits of such numbers stand in their
+/// order.
 #[inline(always)]
 pub fn by_distance(&(d2, place): &(f64, u32)) -> u128 {
     u128::from(d2.to_bits()) << 32 | u128::from(place)
@@ -235,4 +240,27 @@ fn guessed_radius<const C: usize>(photons: &[Photon<C>], frame: &Frame) -> f64 {
     length.sort_by(f64::total_cmp);
     let area = length[2] * length[1].max(length[2] / 64.0);
     (GUESSED_NEIGHBOURS * area / (std::f64::consts::PI * photons.len().max(1) as f64)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bytes_of<const C: usize>(n: u32) -> usize {
+        let frame = Frame::new(DVec3::ZERO, DVec3::ONE);
+        let photon = |i: u32| {
+            let cell = [i.wrapping_mul(2_654_435_769), i.wrapping_mul(40_503 << 13), 0];
+            Photon { cell, direction: 0, primitive: 0, tag: 0, weight: [1.0; C] }
+        };
+        let PhotonMap { photons, guide, .. } = PhotonMap::build((0..n).map(photon).collect(), frame, 0.01);
+        photons.capacity() * size_of::<Photon<C>>() + guide.0.capacity() * 8 + guide.1.capacity() * 4
+    }
+
+    #[test]
+    fn a_map_takes_no_more_than_forty_bytes_a_photon() {
+        let n = 200_000;
+        assert!(bytes_of::<1>(n) <= 29 * n as usize && bytes_of::<3>(n) <= 37 * n as usize);
+        assert_eq!((size_of::<Photon<1>>(), size_of::<Photon<3>>()), (28, 36));
+        assert_eq!(bytes_of::<1>(0), 0);
+    }
 }

@@ -1,8 +1,8 @@
 //! The order that photons are kept in: rows of cells, in a row along the axis.
 //!
-//! Cells are a power of two of the frame's steps wide, so the cell of a photon is a shift of its own integers and nothing is
-//! stored for it. Rows run along the longest extent of the photons; the order is total over all fields of a photon, so it
-//! depends neither on the order they came in nor on threads.
+//! Cells are a power of two of the frame's steps wide, so the cell of a photon is a shift of its own integers
+//! and nothing is stored for it. Rows run along the longest extent of the photons; the order is total over
+//! all fields of a photon, so it depends neither on the order they came in nor on threads.
 
 use rayon::prelude::*;
 
@@ -39,8 +39,8 @@ impl Order {
         axes.sort_by(|&a, &b| length[b].total_cmp(&length[a]));
         let shift = |axis: usize| {
             let cells = radius_m / steps[axis];
-            // A radius below one step, an axis without extent, a radius that is no number: whatever the cells, the answer
-            // is the same.
+            // A radius below one step, an axis without extent, a radius that is no number: whatever the
+            // cells, the answer is the same.
             if cells >= 1.0 { libm::log2(cells.min(4_294_967_296.0)) as u32 } else { 0 }
         };
         let [run, row, slab] = axes;

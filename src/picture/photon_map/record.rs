@@ -116,9 +116,10 @@ impl<const C: usize> Photon<C> {
     }
 }
 
-/// A unit vector in 32 bits: octahedral map (Meyer et al., On Floating-Point Normal Vectors, EGSR 2010), 16 bits each; off by at
-/// most 6.474e-5 rad. On the octahedron |x| + |y| + |z| = 1 rounding moves a point by up to (d, d, 2 d), d = 1 / 65535, half a step:
-/// sqrt 6 d, which is seen largest in the middle of a face, 1 / sqrt 3 from the centre: sqrt 18 / 65535.
+/// A unit vector in 32 bits: octahedral map (Meyer et al., On Floating-Point Normal Vectors, EGSR 2010), 16
+/// bits each; off by at most 6.474e-5 rad. On the octahedron |x| + |y| + |z| = 1 rounding moves a point by up
+/// to (d, d, 2 d), d = 1 / 65535, half a step: sqrt 6 d, which is seen largest in the middle of a face, 1 /
+/// sqrt 3 from the centre: sqrt 18 / 65535.
 #[inline]
 pub fn pack(direction: DVec3) -> u32 {
     let n = direction / (direction.x.abs() + direction.y.abs() + direction.z.abs());

@@ -24,8 +24,8 @@ pub struct SavedMap<const C: usize> {
 }
 
 impl<const C: usize> SavedMap<C> {
-    /// The same photons in another number of channels, 1 or 3: in three, one channel is white; three make one by their luminance,
-    /// exactly where no surface coloured them.
+    /// The same photons in another number of channels, 1 or 3: in three, one channel is white; three make one
+    /// by their luminance, exactly where no surface coloured them.
     pub fn in_channels<const D: usize>(self) -> SavedMap<D> {
         let Self { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons } = self;
         let in_channels = |p: Photon<C>| {

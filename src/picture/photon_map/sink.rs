@@ -39,8 +39,9 @@ pub fn scattering_surfaces(scene: &Scene) -> Vec<bool> {
 /// Photons that a handle collects before it gives them to the store.
 const HANDFUL: usize = 1 << 8;
 
-/// Most photons of a block. A full one is large enough for allocators to map it by itself, so that its memory is the system's again
-/// when it is dropped; many small ones would stay with the process beside the map that they were copied into.
+/// Most photons of a block. A full one is large enough for allocators to map it by itself, so that its memory
+/// is the system's again when it is dropped; many small ones would stay with the process beside the map that
+/// they were copied into.
 const BLOCK: usize = 1 << 21;
 
 /// Photons kept, in blocks; any number of threads add to it, and the order of the blocks means nothing.
@@ -76,13 +77,14 @@ impl<const C: usize> PhotonStore<C> {
         self.frame
     }
 
-    /// Bounds the number of photons it takes from here on until [`Self::take`], give or take two blocks a thread.
+    /// Bounds the number of photons it takes from here on until [`Self::take`], give or take two blocks a
+    /// thread.
     pub fn limit(&mut self, most: usize) {
         self.most = most;
     }
 
-    /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair sample and is
-    /// dropped.
+    /// Takes all photons out. `None` where there were more than the limit: what it holds is then no fair
+    /// sample and is dropped.
     pub fn take(&mut self) -> Option<Kept<C>> {
         let all = [0, 1].map(|k| {
             let blocks = self.blocks[k].get_mut().unwrap_or_else(PoisonError::into_inner);
@@ -112,8 +114,8 @@ impl<const C: usize> PhotonStore<C> {
     }
 }
 
-/// Adds photons to the last block, and to new ones when it is full. A block is as large as all before it, so none is ever copied to
-/// grow, and at most half of them is empty.
+/// Adds photons to the last block, and to new ones when it is full. A block is as large as all before it, so
+/// none is ever copied to grow, and at most half of them is empty.
 fn add<const C: usize>(blocks: &mut Vec<Vec<Photon<C>>>, mut photons: &[Photon<C>]) {
     while !photons.is_empty() {
         let room = blocks.last().map_or(0, |block| block.capacity() - block.len());
@@ -136,15 +138,15 @@ pub fn frame_of(geometry: &Geometry) -> Frame {
     Frame::new(low, high)
 }
 
-/// Keeps the photons of one batch that arrive on scattering surfaces, but for those that no event preceded, and adds
-/// all arrivals to a scene's receivers.
+/// Keeps the photons of one batch that arrive on scattering surfaces, but for those that no event preceded,
+/// and adds all arrivals to a scene's receivers.
 #[derive(Debug)]
 pub struct PhotonSink<'r, 's, const C: usize> {
     receivers: ReceiverSink<'r, 's>,
     store: &'r PhotonStore<C>,
     replicate: u32,
-    /// Whether the photon on its way has met a scattering surface. Where a table let it pass unscattered this says so
-    /// too: it tells which density a photon belongs to, never whether it counts.
+    /// Whether the photon on its way has met a scattering surface. Where a table let it pass unscattered this
+    /// says so too: it tells which density a photon belongs to, never whether it counts.
     scattered: bool,
     kept: [Vec<Photon<C>>; 2],
 }
@@ -193,5 +195,103 @@ impl<const C: usize> Drop for PhotonSink<'_, '_, C> {
         for (scattered, some) in self.kept.iter().enumerate() {
             self.store.put(scattered, some);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::geometry::{Rectangle, Shape, Surface, Whereabouts};
+    use crate::tally::Receivers;
+
+    /// Sheets at z = 0, which scatters, and z = 1, which does not.
+    fn sheets() -> Geometry {
+        let sheet = |z: f64| {
+            let shape = Shape::Rectangle(Rectangle::new(DVec3::Z * z, DVec3::X, DVec3::Y).unwrap());
+            Surface { name: format!("at {z}"), shape }
+        };
+        Geometry::build(vec![sheet(0.0), sheet(1.0)]).unwrap()
+    }
+
+    fn store(geometry: &Geometry) -> PhotonStore<1> {
+        PhotonStore {
+            frame: frame_of(geometry),
+            scatters: vec![true, false],
+            blocks: Default::default(),
+            kept: AtomicUsize::new(0),
+            most: usize::MAX,
+            overflowed: AtomicBool::new(false),
+        }
+    }
+
+    /// An arrival from above or below a sheet.
+    fn arrive(geometry: &Geometry, sink: &mut PhotonSink<'_, '_, 1>, from_z: f64, events: u32) {
+        let direction = if from_z > 0.0 { DVec3::NEG_Z } else { DVec3::Z };
+        let whereabouts = Whereabouts::default();
+        let hit = geometry.nearest(DVec3::new(0.3, 0.4, from_z), direction, &whereabouts, &mut 0).unwrap();
+        sink.arrive(&Arrival { hit: &hit, direction, events, carried: &Grey, whereabouts: &whereabouts });
+    }
+
+    #[test]
+    fn kept_is_what_scatters_and_is_not_direct_by_what_happened_before() {
+        let geometry = sheets();
+        let mut store = store(&geometry);
+        let nobody = Receivers::new(&geometry, &[]);
+        let mut sink = store.sink(nobody.sink(), 5);
+        // Photon 1: direct on the floor, then off the sheet above, and on the floor from below.
+        arrive(&geometry, &mut sink, 0.5, 0);
+        arrive(&geometry, &mut sink, 1.5, 1);
+        arrive(&geometry, &mut sink, -0.5, 2);
+        // Photon 2: off the sheet above and on the floor for the first time, then again.
+        arrive(&geometry, &mut sink, 1.5, 0);
+        arrive(&geometry, &mut sink, 0.5, 1);
+        arrive(&geometry, &mut sink, 0.5, 2);
+        drop(sink);
+        let [caustic, diffuse] = store.take().unwrap().map(|blocks| blocks.concat());
+        assert_eq!(caustic.iter().map(|p| p.tag).collect::<Vec<_>>(), [5 | FRONT]);
+        assert_eq!(diffuse.iter().map(|p| p.tag).collect::<Vec<_>>(), [5 | SCATTERED, 5 | FRONT | SCATTERED]);
+        let photon = caustic[0];
+        assert!((store.frame().position(photon.cell) - DVec3::new(0.3, 0.4, 0.0)).length() < 1e-9);
+        assert!((photon.direction() - DVec3::NEG_Z).length() < 1e-4 && photon.weight == [1.0]);
+        assert_eq!(store.take().unwrap().map(|blocks| blocks.len()), [0, 0]);
+    }
+
+    #[test]
+    fn photons_beyond_the_limit_leave_nothing_and_the_next_range_starts_afresh() {
+        let geometry = sheets();
+        let mut store = store(&geometry);
+        let nobody = Receivers::new(&geometry, &[]);
+        let fill = |store: &PhotonStore<1>, n: usize| {
+            let mut sink = store.sink(nobody.sink(), 0);
+            (0..n).for_each(|_| arrive(&geometry, &mut sink, 0.5, 1));
+        };
+        let number = |kept: Kept<1>| kept.iter().flatten().map(Vec::len).sum::<usize>();
+        store.limit(1000);
+        fill(&store, 600);
+        fill(&store, 400);
+        assert_eq!(store.take().map(number), Some(1000));
+        fill(&store, 600);
+        fill(&store, 401);
+        assert_eq!(store.take().map(number), None);
+        fill(&store, 1000);
+        assert_eq!(store.take().map(number), Some(1000));
+    }
+
+    #[test]
+    fn blocks_double_and_lose_nothing() {
+        let geometry = sheets();
+        let photon = |tag: u32| {
+            let cell = frame_of(&geometry).cell(DVec3::ZERO);
+            Photon::<1> { cell, direction: 0, primitive: 0, tag, weight: [1.0] }
+        };
+        let mut blocks = Vec::new();
+        let all: Vec<Photon<1>> = (0..5000).map(photon).collect();
+        all.chunks(700).for_each(|some| add(&mut blocks, some));
+        assert!(blocks.concat() == all);
+        assert_eq!(blocks[0].capacity(), HANDFUL);
+        assert!(blocks.windows(2).all(|two| two[0].len() == two[0].capacity()));
+        assert!(blocks.len() < 8, "{}", blocks.len());
     }
 }

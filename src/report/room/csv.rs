@@ -42,12 +42,12 @@ pub fn deviations_csv(study: &RoomStudy) -> String {
         let _infallible = writeln!(out, "{a},{},{b},{},{},{spread},{paper}", pair[0], pair[1], v.mean);
     };
     for d in study.deviations() {
-        let pair = [d.few, d.many];
-        row([d.sequence; 2], pair, d.value, paper(d.sequence, pair));
+        row(d.sequences, d.photons, d.value, paper(d.sequences[0], d.photons));
     }
     let [_, many] = last_pair(study);
     for b in study.between() {
-        row([b.first, b.second], [many; 2], b.value, paper_between(b.first, b.second, many));
+        let [first, second] = b.sequences;
+        row(b.sequences, b.photons, b.value, paper_between(first, second, many));
     }
     out
 }

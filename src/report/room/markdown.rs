@@ -91,8 +91,9 @@ fn write_between(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
     writeln!(out, "## Between sequences, {} photons\n", grouped(many))?;
     writeln!(out, "| | and | deviation | paper |\n|---|---|---|---|")?;
     for b in study.between() {
-        let paper = printed(paper_between(b.first, b.second, many));
-        writeln!(out, "| {} | {} | {} | {paper} |", title(b.first), title(b.second), value(b.value))?;
+        let [first, second] = b.sequences;
+        let paper = printed(paper_between(first, second, many));
+        writeln!(out, "| {} | {} | {} | {paper} |", title(first), title(second), value(b.value))?;
     }
     writeln!(out)
 }

@@ -33,8 +33,9 @@ fn write_deviations(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
     let mut line = |[a, b, c, d, e]: [&str; 5]| writeln!(out, "  {a:<24} {b:>11} {c:>11}  {d:<22} {e:>8}");
     line(["sequence", "photons", "and", "deviation", "paper"])?;
     for d in study.deviations() {
-        let paper = printed(paper(d.sequence, [d.few, d.many]));
-        line([title(d.sequence), &grouped(d.few), &grouped(d.many), &value(d.value), &paper])?;
+        let ([sequence, _], [few, many]) = (d.sequences, d.photons.map(grouped));
+        let paper = printed(paper(sequence, d.photons));
+        line([title(sequence), &few, &many, &value(d.value), &paper])?;
     }
     let [few, many] = last_pair(study);
     writeln!(out, "\nrandom against the others, {} and {} photons", grouped(few), grouped(many))?;
@@ -45,8 +46,9 @@ fn write_deviations(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
     }
     writeln!(out, "\ndeviation between sequences, {} photons", grouped(many))?;
     for b in study.between() {
-        let paper = printed(paper_between(b.first, b.second, many));
-        let (first, second) = (title(b.first), title(b.second));
+        let [first, second] = b.sequences;
+        let paper = printed(paper_between(first, second, many));
+        let (first, second) = (title(first), title(second));
         writeln!(out, "  {first:<24} {second:<24} {:<22} {paper:>8}", value(b.value))?;
     }
     Ok(())

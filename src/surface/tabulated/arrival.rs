@@ -1,4 +1,5 @@
-//! Light on its way to a point of a surface: its angles, and the frames in which a table counts scattered directions.
+//! Light on its way to a point of a surface: its angles, and the frames in which a table counts scattered
+//! directions.
 
 use glam::{DMat3, DVec3};
 
@@ -16,8 +17,8 @@ pub(crate) struct Arrival {
 }
 
 impl Arrival {
-    /// Light from wi (unit, pointing away from the surface) on the side of the unit normal. `tangent` is asked where there
-    /// is no plane of incidence: light then counts as coming from its side.
+    /// Light from wi (unit, pointing away from the surface) on the side of the unit normal. `tangent` is
+    /// asked where there is no plane of incidence: light then counts as coming from its side.
     #[inline]
     pub fn new(wi: DVec3, normal: DVec3, along_tangent: impl FnOnce() -> DVec3) -> Self {
         // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
@@ -55,8 +56,8 @@ impl Arrival {
         self.sin * self.onward + self.cos * self.outgoing_normal(quantity)
     }
 
-    /// The frame of scattered directions (columns: azimuth 0, azimuth 90 degrees, pole), as [`crate::scattering::table`]
-    /// defines it.
+    /// The frame of scattered directions (columns: azimuth 0, azimuth 90 degrees, pole), as
+    /// [`crate::scattering::table`] defines it.
     #[inline]
     pub fn axes(&self, frame: Frame, quantity: Quantity) -> DMat3 {
         let m = self.outgoing_normal(quantity);

@@ -1,14 +1,15 @@
 //! Albedos above 1: refused, or scaled to 1, as the scene asks; never silently.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::surface::tabulated::Energy;
+use crate::surface::tabulated::face::Face;
 use crate::surface::tabulated::layer::Layer;
-use crate::surface::tabulated::{Energy, Face};
 
 /// Albedos up to here are 1 as far as values in f32 can tell.
 pub(crate) const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
 
-/// What an albedo is scaled to: 1, and enough beside it that mixtures of such slices don't round to less, which would be an
-/// event that has to be decided.
+/// What an albedo is scaled to: 1, and enough beside it that mixtures of such slices don't round to less,
+/// which would be an event that has to be decided.
 const TO_ONE: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 /// An incidence at which a surface sends back and lets through more than it gets.
@@ -19,21 +20,21 @@ struct Excess {
     phi: f64,
 }
 
-/// Sees to it that no channel of either face scatters more than it gets, at any incidence: the albedos mix linearly, so the
-/// table's own angles are enough.
+/// Sees to it that no channel of either face scatters more than it gets, at any incidence: the albedos mix
+/// linearly, so the table's own angles are enough.
 ///
 /// # Errors
 /// [`Energy::Refuse`] and an albedo above 1.
 pub(super) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> Result<Vec<Diagnostic>> {
     // Faces of the same lobes are one.
     let distinct = if faces[0].layers == faces[1].layers { &faces[..1] } else { &faces[..] };
-    let excesses: Vec<Excess> = distinct.iter().flat_map(|face| excesses(layers, face)).collect();
-    let Some(worst) = excesses.iter().max_by(|a, b| a.albedo.total_cmp(&b.albedo)) else {
+    let all: Vec<Excess> = distinct.iter().flat_map(|face| excesses(layers, face)).collect();
+    let Some(worst) = all.iter().max_by(|a, b| a.albedo.total_cmp(&b.albedo)) else {
         return Ok(Vec::new());
     };
     let mut warnings = Vec::new();
     if worst.albedo > ONE {
-        let count = excesses.iter().filter(|e| e.albedo > ONE).count();
+        let count = all.iter().filter(|e| e.albedo > ONE).count();
         let found = format!(
             "an albedo of {:.4} at theta_i = {:.4}, phi_i = {:.4} degrees, and more than 1 at {count} incidences",
             worst.albedo,
@@ -50,10 +51,10 @@ pub(super) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> 
     scale_slices(layers, distinct);
     // Two lobes with angles of their own may still exceed 1 between the angles of one of them.
     for face in distinct {
-        let most = excesses_most(layers, face);
+        let most = excesses(layers, face).iter().map(|e| e.albedo).fold(0.0, f64::max);
         if most > ONE {
             for k in face.layers.into_iter().flatten() {
-                (0..layers[k].grids.len()).for_each(|slice| layers[k].grids.scale(slice, 1.0 / most));
+                (0..layers[k].grids.count()).for_each(|slice| layers[k].grids.scale(slice, 1.0 / most));
             }
         }
     }
@@ -84,10 +85,6 @@ fn excesses(layers: &[Layer], face: &Face) -> Vec<Excess> {
     let at = |theta: f64, phi: f64| Excess { albedo: total(layers, face, theta, phi), theta, phi };
     let all = phis.iter().flat_map(|phi| thetas.iter().map(move |theta| at(*theta, *phi)));
     all.filter(|e| e.albedo > 1.0).collect()
-}
-
-fn excesses_most(layers: &[Layer], face: &Face) -> f64 {
-    excesses(layers, face).iter().map(|e| e.albedo).fold(0.0, f64::max)
 }
 
 /// Scales every slice by what its own incidence exceeds 1, all channels alike so that the colour stays.

@@ -1,12 +1,13 @@
 //! The sampler of one lobe: a density for every incidence of the table, and their mixture between them.
 //!
-//! Stored is g = f cos(theta_o) at the nodes (METHOD 4). For the incidence of a photon up to four slices mix, linear in theta_i
-//! and in phi_i, all in the frame of that incidence.
+//! Stored is g = f cos(theta_o) at the nodes (METHOD 4). For the incidence of a photon up to four slices mix,
+//! linear in theta_i and in phi_i, all in the frame of that incidence.
 
 use std::f64::consts::PI;
 
 use crate::error::Result;
-use crate::sample::compact::{CompactGrids, Located};
+use crate::sample::angles::Located;
+use crate::sample::compact::CompactGrids;
 use crate::scattering::{Frame, Lobe, Quantity};
 
 /// The sampler of one lobe.
@@ -98,7 +99,8 @@ impl Layer {
         mix
     }
 
-    /// Each incidence about this one, at most four, and its weight, which may be zero (and the incidence then none).
+    /// Each incidence about this one, at most four, and its weight, which may be zero (and the incidence then
+    /// none).
     #[inline(always)]
     pub fn each_part(&self, theta: f64, phi: f64, mut part: impl FnMut(usize, f64)) {
         let (i, t) = bracket(&self.theta_i, theta);
@@ -144,7 +146,7 @@ impl Layer {
         let of = |channel| {
             let mut sum = 0.0;
             for (k, weight) in mix.parts() {
-                sum += weight * self.grids.value_at(self.slice(channel, k), at);
+                sum += weight * self.grids.value(self.slice(channel, k), at);
             }
             sum
         };

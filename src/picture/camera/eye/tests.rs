@@ -64,7 +64,8 @@ fn a_mirror_behind_a_pane_is_seen_with_all_reflections_between_them() {
     let silver = [0.9, 0.6, 0.3];
     let mirror = Material::Mirror(Mirror::new(Reflectance::rgb(silver).unwrap()));
     let seen = seen(vec![(Shape::Mesh(pane), glass()), (plate(2.0), mirror)], 1 << 12);
-    // A pane reflects 2 R / (1 + R) of the light and passes the rest; the sum over passages is a geometric series.
+    // A pane reflects 2 R / (1 + R) of the light and passes the rest; the sum over passages is a geometric
+    // series.
     let r = 2.0 * 0.04 / 1.04;
     // Only ways of a share below 1/1024, and weights below 1/16, are a matter of chance: 5 standard errors.
     assert_parts(seen, |c| r + (1.0 - r) * (1.0 - r) * silver[c] / (1.0 - r * silver[c]), 2e-3);

@@ -8,28 +8,31 @@
 //!
 //! The map's error of one run is noise and bias. The mean over several seeds less the splat is its bias, with noise less by the root
 //! of their number.
+//!
+//! Shared by `bias.rs` and `examples/picture_bias.rs`.
+#![allow(dead_code)]
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::DVec2;
 
-use crate::error::Result;
-use crate::picture::camera::splat;
-use crate::picture::camera::splat::{Splat, SplatMoments, SplatSink};
-use crate::picture::camera::{Film, Pass, Sums, View, render};
-use crate::picture::gather::footprint::Footprints;
-use crate::picture::gather::{Choice, Density, bandwidth};
-use crate::picture::photon_map::sink::scattering_surfaces;
-use crate::picture::photon_map::{PhotonMap, PhotonStore};
-use crate::run::Plan;
-use crate::run::tracer::Tracer;
-use crate::scene::Scene;
-use crate::scene::camera::{Bandwidth, Camera};
-use crate::surface::Rgb;
-use crate::surface::reflectance::luminance;
-use crate::tally::Receivers;
-use crate::transport::{Arrival, Sink};
+use caustix::error::Result;
+use caustix::picture::camera::splat;
+use caustix::picture::camera::splat::{Splat, SplatMoments, SplatSink};
+use caustix::picture::camera::{Film, Pass, Sums, View, render};
+use caustix::picture::gather::footprint::Footprints;
+use caustix::picture::gather::{Choice, Density, bandwidth};
+use caustix::picture::photon_map::sink::scattering_surfaces;
+use caustix::picture::photon_map::{PhotonMap, PhotonStore};
+use caustix::run::Plan;
+use caustix::run::tracer::Tracer;
+use caustix::scene::Scene;
+use caustix::scene::camera::{Bandwidth, Camera};
+use caustix::surface::Rgb;
+use caustix::surface::reflectance::luminance;
+use caustix::tally::Receivers;
+use caustix::transport::{Arrival, Sink};
 
 /// Rays a pixel, along each side, that tell what it sees.
 const PROBES: u32 = 8;

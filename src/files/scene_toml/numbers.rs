@@ -1,0 +1,149 @@
+//! Numbers, vectors and counts of a table.
+
+use glam::DVec3;
+use toml::de::DeValue;
+
+use super::count::parse_count;
+use super::table::{Table, Value};
+use crate::error::Kind;
+use crate::error::invalid::Interval;
+
+/// Components of directions.
+pub(super) const DIRECTION: Interval = Interval { low: -1e9, high: 1e9, words: "a number from -1e9 to 1e9" };
+
+/// What a direction must be.
+pub(super) const DIRECTION_REQUIRED: &str = "a direction [x, y, z] that is not zero";
+
+impl<'t> Table<'t, '_> {
+    /// A number in this interval.
+    pub fn number(&mut self, key: &'static str, interval: &Interval) -> Option<f64> {
+        let value = self.take(key)?;
+        self.number_in(key, value, interval)
+    }
+
+    /// The same, absent: an error.
+    pub fn needed_number(&mut self, key: &'static str, interval: &Interval) -> Option<f64> {
+        let number = self.number(key, interval);
+        self.require(key, number, interval.words)
+    }
+
+    fn number_in(&self, label: &str, value: Value<'t>, interval: &Interval) -> Option<f64> {
+        match number_of(value.get_ref()) {
+            Some(number) if interval.contains(number) => Some(number),
+            Some(_) => self.wrong(label, value, Kind::Range, interval.words),
+            None => self.wrong(label, value, Kind::Syntax, interval.words),
+        }
+    }
+
+    /// `N` numbers in this interval, in a list.
+    pub fn numbers<const N: usize>(&mut self, key: &'static str, interval: &Interval) -> Option<[f64; N]> {
+        let value = self.take(key)?;
+        self.numbers_in(key, value, interval)
+    }
+
+    fn numbers_in<const N: usize>(
+        &self,
+        key: &str,
+        value: Value<'t>,
+        interval: &Interval,
+    ) -> Option<[f64; N]> {
+        let required = format!("a list of {N} numbers, each {}", interval.words);
+        self.each_of(key, value, &required, |label, item| self.number_in(label, item, interval))
+    }
+
+    /// What `read` makes of each of `N` items of a list; all are looked at, so that all their errors are told.
+    fn each_of<T, const N: usize>(
+        &self,
+        key: &str,
+        value: Value<'t>,
+        required: &str,
+        read: impl Fn(&str, Value<'t>) -> Option<T>,
+    ) -> Option<[T; N]> {
+        let Some(items) = value.get_ref().as_array().filter(|items| items.len() == N) else {
+            return self.wrong(key, value, Kind::Syntax, required);
+        };
+        let read = |(i, item)| read(&format!("{key}[{i}]"), item);
+        let read: Vec<_> = items.iter().enumerate().map(read).collect();
+        read.into_iter().collect::<Option<Vec<T>>>()?.try_into().ok()
+    }
+
+    /// A vector `[x, y, z]` whose components lie in this interval.
+    pub fn vector(&mut self, key: &'static str, interval: &Interval) -> Option<DVec3> {
+        self.numbers::<3>(key, interval).map(DVec3::from_array)
+    }
+
+    /// The same, absent: an error; `words` are for a message.
+    pub fn needed_vector(&mut self, key: &'static str, interval: &Interval, words: &str) -> Option<DVec3> {
+        let vector = self.vector(key, interval);
+        self.require(key, vector, words)
+    }
+
+    /// A number for all three components, or a vector.
+    pub fn number_or_vector(&mut self, key: &'static str, interval: &Interval) -> Option<DVec3> {
+        let value = self.take(key)?;
+        if value.get_ref().is_array() {
+            return self.numbers_in::<3>(key, value, interval).map(DVec3::from_array);
+        }
+        if number_of(value.get_ref()).is_none() {
+            let required = format!("{}, or a list of 3 such numbers", interval.words);
+            return self.wrong(key, value, Kind::Syntax, required);
+        }
+        self.number_in(key, value, interval).map(DVec3::splat)
+    }
+
+    /// A whole number in this range.
+    pub fn integer(&mut self, key: &'static str, low: u64, high: u64, words: &str) -> Option<u64> {
+        let value = self.take(key)?;
+        self.integer_in(key, value, low, high, words)
+    }
+
+    fn integer_in(&self, label: &str, value: Value<'t>, low: u64, high: u64, words: &str) -> Option<u64> {
+        let Some(integer) = value.get_ref().as_integer() else {
+            return self.wrong(label, value, Kind::Syntax, words);
+        };
+        match u64::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(number) if (low..=high).contains(&number) => Some(number),
+            _ => self.wrong(label, value, Kind::Range, words),
+        }
+    }
+
+    /// Two cell counts of at least 1 each and a product of at most `most`.
+    pub fn cells(&mut self, key: &'static str, most: u64, words: &str) -> Option<[u32; 2]> {
+        let value = self.take(key)?;
+        let highest = most.min(u64::from(u32::MAX));
+        let cells: [u64; 2] =
+            self.each_of(key, value, words, |label, item| self.integer_in(label, item, 1, highest, words))?;
+        if cells[0] * cells[1] > most {
+            return self.wrong(key, value, Kind::Limit, words);
+        }
+        Some(cells.map(|count| count as u32))
+    }
+
+    /// A count as [`parse_count`] reads it: a number, or a text.
+    pub fn count(&mut self, key: &'static str) -> Option<u64> {
+        let value = self.take(key)?;
+        let text = match value.get_ref() {
+            DeValue::Integer(integer) if integer.radix() != 10 => {
+                u64::from_str_radix(integer.as_str(), integer.radix())
+                    .map_or_else(|_| String::new(), |n| n.to_string())
+            }
+            DeValue::Integer(integer) => integer.as_str().to_string(),
+            DeValue::Float(float) => float.as_str().to_string(),
+            DeValue::String(text) => text.to_string(),
+            _ => String::new(),
+        };
+        parse_count(&text).map_err(|e| self.error(key, e.kind(), e.required())).ok()
+    }
+}
+
+/// A TOML number as f64; integers are welcome where a number is.
+fn number_of(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+        DeValue::Integer(integer) => {
+            u64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|n| n as f64)
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,179 @@
+//! The tables of a scene file, and its parts as they stand in it.
+
+use glam::DVec3;
+
+use super::document::Document;
+use super::loader::Make;
+use super::names::Names;
+use super::table::{Placed, Table};
+use super::{camera, emitter, material, receiver, surface};
+use crate::emitter::{Colour, Emitter};
+use crate::error::{Kind, Place};
+use crate::geometry::Shape;
+use crate::scene::camera::Camera;
+use crate::scene::receiver::ReceiverSpec;
+use crate::surface::Material;
+
+/// Most emitters, materials, surfaces or receivers of one scene, each.
+const MOST_PARTS: usize = 4096;
+
+/// Most replicates.
+const MOST_REPLICATES: u64 = 65_536;
+
+/// Most reflections of `[compare]`: M of them take 2 M + 4 coordinates, and 64 are a sequence's own.
+const MOST_COMPARED_REFLECTIONS: u64 = 30;
+
+/// `[run]`: what the command line takes where it says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RunDefaults {
+    /// Number of photons, 1 to 2^48.
+    pub photons: Option<u64>,
+    /// Seed of the sequence.
+    pub seed: Option<u64>,
+    /// Number of replicates, 1 to 65536.
+    pub replicates: Option<u32>,
+}
+
+pub(super) struct EmitterPart {
+    pub name: String,
+    pub colour: Colour,
+    pub make: Make<Emitter>,
+    pub place: Place,
+}
+
+pub(super) struct MaterialPart {
+    pub make: Make<Material>,
+    /// The direction from which a table's azimuths are counted, where the scene gives one.
+    pub reference: Option<DVec3>,
+    pub place: Place,
+}
+
+pub(super) struct SurfacePart {
+    pub name: String,
+    /// Index of its material.
+    pub material: usize,
+    pub shape: Make<Shape>,
+    /// The word for a shape on which a receiver has a value a face.
+    pub of_faces: Option<&'static str>,
+    pub place: Place,
+}
+
+/// The parts of a scene; `None` stands for one with an error, so that indices stay those of the file.
+pub(super) struct Parts {
+    pub emitters: Vec<Option<EmitterPart>>,
+    pub materials: Vec<Option<MaterialPart>>,
+    pub surfaces: Vec<Option<SurfacePart>>,
+    pub receivers: Vec<Option<(ReceiverSpec, Place)>>,
+    pub camera: Option<(Camera, Place)>,
+    pub compared_reflections: Option<u32>,
+    pub run: RunDefaults,
+    /// Every mention of a file.
+    pub files: Vec<Placed<String>>,
+}
+
+impl Parts {
+    pub fn read(mut root: Table<'_, '_>) -> Self {
+        let document = root.document();
+        let start = root.place();
+
+        let emitter_tables = parts_named(&mut root, "emitter");
+        if root.place_of("emitter").is_none() {
+            document.error_at(
+                start,
+                Kind::Missing,
+                "a scene without [[emitter]]",
+                "at least one [[emitter]]",
+            );
+        }
+        let mut names = Names::new("emitter");
+        let emitters = emitter_tables
+            .into_iter()
+            .enumerate()
+            .map(|(index, table)| emitter::read(table, index, &mut names))
+            .collect();
+
+        let material_tables = root
+            .table("material", "the materials")
+            .map(|t| t.named_tables("a [material.NAME]", MOST_PARTS, "a table [material.NAME]"))
+            .unwrap_or_default();
+        let mut material_names = Names::new("material");
+        let mut materials = Vec::new();
+        for (index, (name, table)) in material_tables.into_iter().enumerate() {
+            material_names.insert(document, &name, table.place(), index);
+            materials.push(material::read(table));
+        }
+
+        let mut surface_names = Names::new("surface");
+        let mut cells = 0;
+        let surfaces: Vec<_> = parts_named(&mut root, "surface")
+            .into_iter()
+            .enumerate()
+            .map(|(index, table)| {
+                surface::read(table, index, &mut surface_names, &material_names, &mut cells)
+            })
+            .collect();
+
+        let mut names = Names::new("receiver");
+        let receivers: Vec<_> = parts_named(&mut root, "receiver")
+            .into_iter()
+            .enumerate()
+            .map(|(index, table)| {
+                let place = table.place();
+                Some((receiver::read(table, index, &mut names, &surface_names, &surfaces)?, place))
+            })
+            .collect();
+        if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
+            let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
+            document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
+        }
+        warn_unused(document, &material_names, &surfaces);
+
+        let camera = root.table("camera", "[camera]").and_then(|table| {
+            let place = table.place();
+            Some((camera::read(table)?, place))
+        });
+        let compared_reflections = root.table("compare", "[compare]").and_then(read_compare);
+        let run = root.table("run", "[run]").map(read_run).unwrap_or_default();
+        root.finish();
+        let files = document.files();
+        Self { emitters, materials, surfaces, receivers, camera, compared_reflections, run, files }
+    }
+}
+
+/// The tables `[[key]]` of the scene.
+fn parts_named<'t, 'd>(root: &mut Table<'t, 'd>, key: &'static str) -> Vec<Table<'t, 'd>> {
+    let what = format!("an [[{key}]]").replace("an [[s", "a [[s").replace("an [[r", "a [[r");
+    let required = format!("1 to {MOST_PARTS} tables headed [[{key}]] (two brackets)");
+    root.tables(key, &what, MOST_PARTS, &required).unwrap_or_default()
+}
+
+fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<SurfacePart>]) {
+    let used: Vec<usize> = surfaces.iter().flatten().map(|s| s.material).collect();
+    for (name, place, index) in names.in_order() {
+        if !used.contains(&index) {
+            let found = format!("the material `{name}`, which no surface has");
+            document.warn_at(place, Kind::Unknown, found, format!("a surface with material = \"{name}\""));
+        }
+    }
+}
+
+/// `[compare]`: reflections.
+fn read_compare(mut table: Table<'_, '_>) -> Option<u32> {
+    let words = format!("a whole number from 0 to {MOST_COMPARED_REFLECTIONS}");
+    let reflections = table.integer("reflections", 0, MOST_COMPARED_REFLECTIONS, &words);
+    let reflections = table.require("reflections", reflections, &words);
+    table.finish();
+    reflections.map(|r| r as u32)
+}
+
+/// `[run]`: photons, seed, replicates.
+fn read_run(mut table: Table<'_, '_>) -> RunDefaults {
+    let photons = table.count("photons");
+    let seed = table.integer("seed", 0, u64::MAX, "a whole number from 0 to 2^64 - 1");
+    let replicates = table.integer("replicates", 1, MOST_REPLICATES, "a whole number from 1 to 65536");
+    if photons.zip(replicates).is_some_and(|(photons, replicates)| photons < replicates) {
+        table.error("replicates", Kind::Range, "at most as many replicates as photons");
+    }
+    table.finish();
+    RunDefaults { photons, seed, replicates: replicates.map(|r| r as u32) }
+}
