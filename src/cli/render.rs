@@ -19,11 +19,9 @@ use crate::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 
+use super::args::MAX_THREADS;
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::{Done, RenderArgs, algorithm, count, exit, picture, print, say, warn};
-
-/// Most threads that can be asked for; starting more takes longer than tracing.
-pub(super) const MAX_THREADS: u32 = 1024;
 
 /// Reads and builds a scene; without a path the built-in one.
 pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {

@@ -11,8 +11,9 @@ use clap::Args;
 
 use crate::error::{Diagnostic, Kind, Result};
 
-use super::render::{MAX_THREADS, load};
-use super::{Done, warn, whole};
+use super::args::{MAX_THREADS, whole};
+use super::render::load;
+use super::{Done, warn};
 
 /// Most point sets of a variant.
 const MOST_SEEDS: u32 = 1024;

@@ -8,8 +8,8 @@ use crate::cli::{Done, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_each;
 use crate::files::parts::Parts;
-use crate::lab::room::measure::{Measurement, Task, measure};
-use crate::lab::room::{Options, RoomStudy};
+use crate::lab::room::measure::measure;
+use crate::lab::room::{Measurement, Options, RoomStudy, Task};
 use crate::report::room::{csv, deviations_csv, markdown, text};
 use crate::scene::Scene;
 

@@ -25,7 +25,7 @@ struct Excess {
 ///
 /// # Errors
 /// [`Energy::Refuse`] and an albedo above 1.
-pub(crate) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> Result<Vec<Diagnostic>> {
+pub(super) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> Result<Vec<Diagnostic>> {
     // Faces of the same lobes are one.
     let distinct = if faces[0].layers == faces[1].layers { &faces[..1] } else { &faces[..] };
     let all: Vec<Excess> = distinct.iter().flat_map(|face| excesses(layers, face)).collect();

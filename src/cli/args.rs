@@ -1,0 +1,117 @@
+//! The arguments of the subcommands.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::run::MAX_REPLICATES;
+
+/// Most threads that can be asked for; starting more takes longer than tracing.
+pub const MAX_THREADS: u32 = 1024;
+
+/// Arguments of `caustix render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Scene file; the built-in scene if absent.
+    pub scene: Option<PathBuf>,
+    /// Directory for the results; made if it is not there.
+    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
+    pub output: PathBuf,
+    /// Photons in all, like 4_456_448, 4.5e6 or 2^22 [default: the scene's, else 2^22].
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub photons: Option<String>,
+    /// Algorithm variant: mc, qmc, qmc-inverse or qmc-inverse-reuse (default); mc and qmc reject inside
+    /// the table's cell; mc:table against its maximum, mc:next-point the same with retries from the next point.
+    #[arg(long, value_name = "V")]
+    pub variant: Option<String>,
+    /// Point sequence: sobol-owen (default), sobol, sobol-shift, independent, halton, halton-faure, hammersley, lattice, weyl or
+    /// kronecker, the last six also with "-rotation" for a seed; jittered, latin-hypercube.
+    #[arg(long, value_name = "S")]
+    pub sequence: Option<String>,
+    /// Seed of the randomisation [default: the scene's, else 1].
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
+    pub seed: Option<u64>,
+    /// Independent replicates, from which the standard errors come [default: the scene's, else 8].
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_REPLICATES as u64 }>)]
+    pub replicates: Option<u32>,
+    /// Threads [default: all cores]. The results do not depend on it.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_THREADS as u64 }>)]
+    pub threads: Option<u32>,
+    /// Save the photons that the scene's camera sees, for other views of the same light.
+    #[arg(long, value_name = "FILE", conflicts_with = "map")]
+    pub save_map: Option<PathBuf>,
+    /// Trace nothing: the camera's picture of photons saved by --save-map under the same settings.
+    #[arg(long, value_name = "FILE")]
+    pub map: Option<PathBuf>,
+    /// No progress bar and no summary.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Arguments of `caustix photometry`.
+#[derive(Debug, Args)]
+pub struct PhotometryArgs {
+    /// Photometric file (IES LM-63).
+    pub file: PathBuf,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Write a polar candela diagram (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `caustix bsdf`.
+#[derive(Debug, Args)]
+pub struct BsdfArgs {
+    /// Scattering table: caustix text, Zemax/Radiant .bsdf, MERL or Klems XML.
+    pub file: PathBuf,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Write a polar diagram of the plane of incidence (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub plot: Option<PathBuf>,
+}
+
+/// Arguments of `caustix sample`.
+#[derive(Debug, Args)]
+pub struct SampleArgs {
+    /// Photometric file (IES LM-63).
+    pub file: PathBuf,
+    /// Directions to sample, like 1e6 or 2^20.
+    #[arg(short = 'n', value_name = "N", allow_hyphen_values = true)]
+    pub samples: String,
+    /// Algorithm variant, as for `render` [default: qmc-inverse-reuse].
+    #[arg(long, value_name = "V")]
+    pub variant: Option<String>,
+    /// Point sequence [default: the variant's].
+    #[arg(long, value_name = "S")]
+    pub sequence: Option<String>,
+    /// Seed of the randomisation.
+    #[arg(long, value_name = "K", default_value = "1", allow_hyphen_values = true, value_parser = whole::<u64, 0, { u64::MAX }>)]
+    pub seed: u64,
+    /// Write the directions as CSV: the file's own angles, the unit vector of a lamp that hangs, coordinates used.
+    #[arg(short = 'o', long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `caustix check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Scene file; the built-in scene if absent.
+    pub scene: Option<PathBuf>,
+    /// As JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A whole number given on the command line; `LOW` and `HIGH` are for the message, and are enforced where the number is
+/// used. clap puts the option and the text before the message.
+pub fn whole<T: TryFrom<u64>, const LOW: u64, const HIGH: u64>(text: &str) -> Result<T, String> {
+    let value = text.parse::<u64>().ok().and_then(|n| T::try_from(n).ok());
+    value.ok_or_else(|| format!("required: a whole number from {LOW} to {HIGH}"))
+}
