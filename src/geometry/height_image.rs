@@ -2,8 +2,11 @@
 
 use glam::DVec2;
 
-use super::heightfield::HEIGHT;
 use crate::error::Invalid;
+use crate::error::invalid::Interval;
+
+/// Amplitudes of waves and heights of pictures, m.
+pub const HEIGHT: Interval = Interval { low: -1e9, high: 1e9, words: "a height from -1e9 to 1e9 m" };
 
 /// A grid of heights (m), rows from the far (greatest y) edge to the near one, as a picture is stored.
 #[derive(Debug, Clone, PartialEq)]

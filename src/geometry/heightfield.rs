@@ -2,12 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
+use super::height_image::HEIGHT;
 use super::{ANGLE, COORDINATE, HeightImage, LENGTH, Mesh, MeshParts, Noise, Smoothing};
 use crate::error::Invalid;
 use crate::error::invalid::Interval;
 
-/// Amplitudes of waves and heights of pictures, m.
-pub const HEIGHT: Interval = Interval { low: -1e9, high: 1e9, words: "a height from -1e9 to 1e9 m" };
 /// Most cells of one heightfield: 2^22, eight million triangles.
 pub const MOST_CELLS: u64 = 1 << 22;
 /// What cells must be, in words.

@@ -33,8 +33,8 @@ use glam::DVec3;
 
 pub use box_mesh::box_mesh;
 pub use coincident::coincident_surfaces;
-pub use height_image::HeightImage;
-pub use heightfield::{CELLS_REQUIRED, Facing, Formula, HEIGHT, Heightfield, MOST_CELLS, Wave};
+pub use height_image::{HEIGHT, HeightImage};
+pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
 pub use noise::{MOST_OCTAVES, Noise, Octave, PEAK, RELATIVE};
 pub use paraboloid::Paraboloid;

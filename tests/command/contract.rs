@@ -82,7 +82,7 @@ fn impossible_requests_exit_1_and_say_what_is_required() {
         ("render --threads 5000 --photons 64", "--threads 5000", "1 to 1024 threads"),
         ("render nowhere.toml", "nowhere.toml: found", "a file that can be read"),
         ("check nowhere.toml", "nowhere.toml: found", "a file that can be read"),
-        ("photometry nowhere.ies", "nowhere.ies: found", "a readable file"),
+        ("photometry nowhere.ies", "nowhere.ies: found", "a file that can be read"),
     ] {
         s.is_told(line, 1, &[found, "; required: ", required]);
     }

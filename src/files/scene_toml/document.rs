@@ -3,8 +3,14 @@
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-use super::table::Placed;
 use crate::error::{Diagnostic, Kind, Place};
+
+/// A value and where it stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placed<T> {
+    pub value: T,
+    pub place: Place,
+}
 
 /// Most errors that are kept for one file; those beyond it are counted.
 pub const MOST_ERRORS: usize = 100;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::loader::Make;
 use super::names::Names;
 use super::numbers::DIRECTION;
-use super::parts::EmitterPart;
+use super::part::EmitterPart;
 use super::table::Table;
 use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::loader::Make;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
-use super::parts::MaterialPart;
+use super::part::MaterialPart;
 use super::table::Table;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;

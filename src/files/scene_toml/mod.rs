@@ -14,6 +14,7 @@ mod loader;
 mod material;
 mod names;
 mod numbers;
+mod part;
 mod parts;
 mod receiver;
 mod suggest;

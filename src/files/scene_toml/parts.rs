@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::document::Document;
 use super::loader::Make;
 use super::names::Names;
+use super::part::{EmitterPart, MaterialPart, SurfacePart};
 use super::table::{Placed, Table};
 use super::{camera, emitter, material, receiver, surface};
 use crate::emitter::{Colour, Emitter};
@@ -32,30 +33,6 @@ pub struct RunDefaults {
     pub seed: Option<u64>,
     /// Number of replicates, 1 to 65536.
     pub replicates: Option<u32>,
-}
-
-pub(super) struct EmitterPart {
-    pub name: String,
-    pub colour: Colour,
-    pub make: Make<Emitter>,
-    pub place: Place,
-}
-
-pub(super) struct MaterialPart {
-    pub make: Make<Material>,
-    /// The direction from which a table's azimuths are counted, where the scene gives one.
-    pub reference: Option<DVec3>,
-    pub place: Place,
-}
-
-pub(super) struct SurfacePart {
-    pub name: String,
-    /// Index of its material.
-    pub material: usize,
-    pub shape: Make<Shape>,
-    /// The word for a shape on which a receiver has a value a face.
-    pub of_faces: Option<&'static str>,
-    pub place: Place,
 }
 
 /// The parts of a scene; `None` stands for one with an error, so that indices stay those of the file.

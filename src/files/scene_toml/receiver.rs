@@ -1,7 +1,7 @@
 //! `[[receiver]]`: what is measured.
 
 use super::names::{Names, Reference};
-use super::parts::SurfacePart;
+use super::part::SurfacePart;
 use super::table::{Placed, Table};
 use crate::error::Kind;
 use crate::scene::receiver::{CELLS_REQUIRED, MOST_CELLS, ReceiverEvents, ReceiverSide, ReceiverSpec};

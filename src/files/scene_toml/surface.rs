@@ -6,7 +6,7 @@ use super::heightfield;
 use super::loader::Make;
 use super::names::Names;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
-use super::parts::SurfacePart;
+use super::part::SurfacePart;
 use super::table::Table;
 use crate::error::Invalid;
 use crate::files::obj::{ObjOptions, parse_obj};

@@ -22,8 +22,8 @@ pub(super) fn parse(text: &str) -> Result<Spanned<DeTable<'_>>, Vec<Error>> {
     if faults.is_empty() { Ok(root) } else { Err(faults) }
 }
 
-/// Keep one error for every line with a fault: what stands where the parser stopped, and the line. Which rule it breaks is for the
-/// reader to see: the parser's own words are not looked at.
+/// Keep one error for every line with a fault: what stands where the parser stopped, the line, and the rule that it breaks, by
+/// our own look at it: the parser's words are not used.
 pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
     let mut told = Vec::new();
     for fault in faults {
@@ -43,7 +43,7 @@ pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
             ),
             // A key that is twice in a table because the table's header is: told already.
             Some(Repeated::Below(header)) if told.contains(&header) => continue,
-            _ => (not_toml(text, place.line, excerpt.trim()), REQUIRED),
+            _ => (not_toml(text, place.line, excerpt.trim()), rule_of(text, place.line)),
         };
         told.push(place.line);
         document.error(Diagnostic::new(Kind::Syntax, found, required).placed(Some(place)));
@@ -51,6 +51,26 @@ pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
 }
 
 const REQUIRED: &str = "TOML (https://toml.io): key = value, [table] or [[table]], and values such as 1.5, \"text\", true, [1, 2]";
+
+/// The rule that a line with a fault breaks, where one of those that people trip over is seen in its value.
+fn rule_of(text: &str, number: usize) -> &'static str {
+    let line = text.lines().nth(number - 1).unwrap_or_default();
+    let value = line.split_once('=').map_or("", |(_, value)| value.trim());
+    if value.starts_with('=') {
+        return "one `=` between a key and its value";
+    }
+    let unsigned = value.trim_start_matches(['+', '-']);
+    let (signs, digits) = (value.len() - unsigned.len(), unsigned.as_bytes());
+    match digits {
+        [b'0'..=b'9', ..] if signs > 1 => "a number with at most one sign, before its first digit",
+        [b'0', b'x' | b'o' | b'b', ..] if signs == 1 => {
+            "a number that begins with 0x, 0o or 0b and has no sign"
+        }
+        [b'0', b'0'..=b'9', ..] => "a number without leading zeros",
+        [b'0'..=b'9', ..] if unsigned.contains("__") => "a digit before and after every `_`",
+        _ => REQUIRED,
+    }
+}
 
 fn not_toml(text: &str, number: usize, excerpt: &str) -> String {
     let shown = cut(text.lines().nth(number - 1).unwrap_or_default().trim());

@@ -8,16 +8,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::document::Document;
+pub(super) use super::document::Placed;
 use super::suggest;
 use crate::error::invalid::Invalid;
 use crate::error::{Diagnostic, Kind, Place};
-
-/// A value and where it stands.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placed<T> {
-    pub value: T,
-    pub place: Place,
-}
 
 pub(super) type Value<'t> = &'t Spanned<DeValue<'t>>;
 

@@ -1,0 +1,33 @@
+//! One emitter, material or surface as its table says it.
+
+use glam::DVec3;
+
+use super::loader::Make;
+use crate::emitter::{Colour, Emitter};
+use crate::error::Place;
+use crate::geometry::Shape;
+use crate::surface::Material;
+
+pub(super) struct EmitterPart {
+    pub name: String,
+    pub colour: Colour,
+    pub make: Make<Emitter>,
+    pub place: Place,
+}
+
+pub(super) struct MaterialPart {
+    pub make: Make<Material>,
+    /// The direction from which a table's azimuths are counted, where the scene gives one.
+    pub reference: Option<DVec3>,
+    pub place: Place,
+}
+
+pub(super) struct SurfacePart {
+    pub name: String,
+    /// Index of its material.
+    pub material: usize,
+    pub shape: Make<Shape>,
+    /// The word for a shape on which a receiver has a value a face.
+    pub of_faces: Option<&'static str>,
+    pub place: Place,
+}
