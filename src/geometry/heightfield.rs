@@ -5,7 +5,6 @@ use glam::{DVec2, DVec3};
 use super::height_image::HEIGHT;
 use super::{ANGLE, COORDINATE, HeightImage, LENGTH, Mesh, MeshParts, Noise, Smoothing};
 use crate::error::Invalid;
-use crate::error::invalid::Interval;
 
 /// Most cells of one heightfield: 2^22, eight million triangles.
 pub const MOST_CELLS: u64 = 1 << 22;

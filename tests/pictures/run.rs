@@ -4,16 +4,17 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use caustix::error::Kind;
 use caustix::files::photon_map;
+use caustix::files::scene_toml::parse_scene;
 use caustix::picture::camera::Film;
 use caustix::picture::{AnyPicture, Picture, Watch, hash_of_photons, picture_of_saved, trace_picture};
 use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
-use caustix::scene::Identity;
 use caustix::scene::camera::{Bandwidth, Camera, CameraSpec};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneBuilder};
 use caustix::surface::{Dielectric, Lambertian, Material, Reflectance};
 use glam::DVec3;
 
+use crate::support::data::project;
 use crate::support::pictures::{beam, grey, on_threads, panel, plan, rectangle, sphere, unwatched};
 
 /// A glass ball above a table before a wall, under a beam and a panel: light of L S+ D and of L D D.
@@ -307,17 +308,19 @@ fn a_saved_map_is_of_its_scene_and_settings_and_undamaged() {
 #[test]
 fn the_hash_of_photons_is_of_all_but_the_camera() {
     let plan = plan(1 << 13, 2);
-    let of = |text: &str, file: &str| {
-        let mut scene = ball_on_table(grey(0.4), ROOM, true);
-        let files = vec![("a.ies".to_string(), file.to_string())];
-        scene.identity = Identity { text: text.into(), files, ..Identity::default() };
-        hash_of_photons(&scene, &plan)
+    let folder = tempfile::tempdir().unwrap();
+    let lamp = std::fs::read_to_string(project().join("ies/spot.ies")).unwrap();
+    let of = |text: &str, lamp: &str| {
+        std::fs::write(folder.path().join("a.ies"), lamp).unwrap();
+        hash_of_photons(&parse_scene(text, folder.path()).unwrap(), &plan)
     };
-    let camera = "[camera]\nposition = [0, 0, 1]\n";
-    let wall = "[material.wall]\ntype = \"absorber\"\n";
-    let bare = of(wall, "aa");
-    assert_eq!(of(&format!("{camera}{wall}"), "aa"), bare);
-    assert_eq!(of(&format!("{}{wall}", camera.replace('1', "2")), "aa"), bare);
-    assert_ne!(of(&wall.replace("absorber", "mirror"), "aa"), bare);
-    assert_ne!(of(wall, "ab"), bare);
+    let scene = "[[emitter]]\ntype = 'photometric'\nfile = 'a.ies'\nposition = [0, 0, 2]\n\
+                 [material.wall]\ntype = \"absorber\"\n\
+                 [[surface]]\nname = 's'\ntype = 'sphere'\nmaterial = 'wall'\ncenter = [0, 0, 0]\nradius = 1\n";
+    let camera = "[camera]\nposition = [0, 0, 4]\nlook_at = [0, 1, 0]\nfov_deg = 40\npixels = [8, 8]\n";
+    let bare = of(scene, &lamp);
+    assert_eq!(of(&format!("{scene}{camera}"), &lamp), bare);
+    assert_eq!(of(&format!("{scene}{}", camera.replace("40", "50")), &lamp), bare);
+    assert_ne!(of(&scene.replace("absorber", "mirror"), &lamp), bare);
+    assert_ne!(of(scene, &lamp.replace("narrow beam", "wide beam")), bare);
 }

@@ -11,7 +11,7 @@ use caustix::picture::trace_picture;
 use caustix::run::Plan;
 use caustix::run::tracer::Tracer;
 use caustix::scene::Scene;
-use caustix::scene::camera::{CameraSpec, Filter, Method};
+use caustix::scene::camera::{Camera, CameraSpec, Filter, Method};
 use caustix::surface::{Dielectric, Grey, Lambertian, Material, Reflectance, Rgb};
 use caustix::tally::Receivers;
 use glam::{DVec2, DVec3};
@@ -239,9 +239,10 @@ fn the_same_bits_on_any_number_of_threads_and_refusals() {
     for threads in [2, 7] {
         assert_eq!(on(threads).film, one.film);
     }
-    let lens = go(&CameraSpec { lens_radius_m: 0.01, ..spec.clone() }).unwrap_err();
-    assert_eq!(lens.kind(), Kind::Range);
-    assert!(lens.to_string().contains("splat"), "{lens}");
-    let large = go(&CameraSpec { pixels: [16384, 16384], ..spec.clone() }).unwrap_err();
+    let lens = Camera::new(CameraSpec { lens_radius_m: 0.01, ..spec.clone() }).unwrap_err();
+    assert!(lens.what() == "lens_radius" && lens.to_string().contains("splat"), "{lens}");
+    let large = Camera::new(CameraSpec { pixels: [16384, 16384], ..spec.clone() }).unwrap_err();
+    assert_eq!(large.what(), "pixels");
+    let large = go(&CameraSpec { pixels: [8192, 8192], ..spec.clone() }).unwrap_err();
     assert_eq!(large.kind(), Kind::Limit);
 }

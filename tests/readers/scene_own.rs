@@ -193,7 +193,7 @@ fn defaults_are_as_documented() {
     assert_eq!(file.run, RunDefaults::default());
     let scene = file.build().unwrap();
     assert_eq!(scene.emitter_names, ["emitter 1", "emitter 2", "emitter 3"]);
-    assert_eq!(scene.identity.files.len(), 1, "a file named twice is read once");
+    assert_eq!(scene.identity.files.len(), 2, "one entry for each part that names a file");
     let [Emitter::Photometric(first), Emitter::Photometric(second), beam @ Emitter::Beam(_)] =
         scene.emitters.as_slice()
     else {

@@ -1,19 +1,13 @@
 //! The tables of a scene file, and its parts as they stand in it.
 
-use glam::DVec3;
-
 use super::document::Document;
-use super::loader::Make;
 use super::names::Names;
 use super::part::{EmitterPart, MaterialPart, SurfacePart};
 use super::table::{Placed, Table};
 use super::{camera, emitter, material, receiver, surface};
-use crate::emitter::{Colour, Emitter};
 use crate::error::{Kind, Place};
-use crate::geometry::Shape;
 use crate::scene::camera::Camera;
 use crate::scene::receiver::ReceiverSpec;
-use crate::surface::Material;
 
 /// Most emitters, materials, surfaces or receivers of one scene, each.
 const MOST_PARTS: usize = 4096;
