@@ -1,6 +1,7 @@
 //! A scene in code: a photometric file above a pane of glass, the illuminance below it with its error.
 //!
 //! `cargo run --release --example embed -- ies/spot.ies`
+#![allow(clippy::print_stdout)]
 
 use std::sync::atomic::AtomicBool;
 
@@ -26,7 +27,6 @@ fn main() -> Result<(), Vec<Diagnostic>> {
     scene.surface("floor", Shape::Rectangle(floor), Material::Lambertian(grey));
     scene.receiver(ReceiverSpec::new("floor", "floor")?.with_cells([5, 5])?);
     let scene = scene.build()?;
-
     let plan = Plan::new(&Settings { photons: Some(1 << 18), ..Settings::default() })?;
     let outcome = trace(&scene, &plan, &AtomicBool::new(false), &|_photons| {})?;
     for cell in 0..25 {

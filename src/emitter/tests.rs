@@ -46,7 +46,8 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
     let frame = AimFrame::new(DVec3::NEG_Z, None).unwrap();
     let panel = Panel::new([1.0; 2]).unwrap();
     let section = BeamSection::Disc { radius: 1.0 };
-    let constructors: [(&str, &dyn Fn(DVec3, f64) -> &'static str); 4] = [
+    type Constructor<'a> = &'a dyn Fn(DVec3, f64) -> &'static str;
+    let constructors: [(&str, Constructor<'_>); 4] = [
         ("isotropic", &|position, flux_lm| refused(Isotropic::new(position, flux_lm))),
         ("photometric", &|position, flux_lm| {
             refused(Photometric::new(&photometry, position, frame, Some(flux_lm)))

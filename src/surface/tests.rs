@@ -239,7 +239,7 @@ fn copies_of_a_table_are_held_once() {
     let table = ScatterTable::new("even", vec![lobe], Vec::new()).unwrap();
     let made = || Material::Tabulated(Box::new(Tabulated::new(&table, &Options::default()).unwrap().0));
     let (one, other) = (made(), made());
-    let bytes = memory_bytes(&[one.clone()]);
+    let bytes = memory_bytes(std::slice::from_ref(&one));
     assert!(bytes > 0);
     assert_eq!(memory_bytes(&[one.clone(), Material::Absorber, one.clone()]), bytes);
     assert_eq!(memory_bytes(&[one, other]), 2 * bytes);

@@ -145,7 +145,7 @@ fn only_colour_that_is_not_white_makes_a_scene_coloured() {
 #[test]
 fn wrong_colours_are_refused() {
     let errors = |lamp: &str| -> Vec<Diagnostic> {
-        parse(&text(&[lamp], "0.5", "all"), "test.toml", Base::Directory(".".into())).err().expect(lamp)
+        parse(&text(&[lamp], "0.5", "all"), "test.toml", Base::Directory(".".into())).expect_err(lamp)
     };
     for (lamp, line, kind, required) in [
         ("colour = [0, 0, 0]", 5, Kind::Range, "flux_lm says how bright"),

@@ -300,7 +300,7 @@ fn branches(surface: &Surface, wi: DVec3) -> Vec<Branch<'_>> {
 /// Coordinates of a photon, of eight seven that are scattered.
 fn coordinates(i: u64, albedo: f64) -> [u64; 3] {
     let [event, u1, u2] = [0, 1, 2].map(|k| mix64(4 * i + k));
-    [if i % 8 == 0 { event } else { fraction(albedo.min(1.0) * to_unit_f64(event)) }, u1, u2]
+    [if i.is_multiple_of(8) { event } else { fraction(albedo.min(1.0) * to_unit_f64(event)) }, u1, u2]
 }
 
 /// The coordinates of a photon follow from where it went: whether it was scattered and by which slice from

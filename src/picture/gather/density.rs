@@ -202,7 +202,7 @@ mod tests {
         let photon = |i: u32| {
             let x = ((f64::from(i) + 0.5) / f64::from(n)).sqrt();
             let cell = frame.cell(DVec3::new(x, 0.5, 0.0));
-            Photon { cell, direction: pack(DVec3::NEG_Z), primitive: 0, tag: i % 2 | FRONT, weight: [1.0] }
+            Photon { cell, direction: pack(DVec3::NEG_Z), primitive: 0, tag: (i % 2) | FRONT, weight: [1.0] }
         };
         PhotonMap::build((0..n).map(photon).collect(), frame, 0.1)
     }
