@@ -244,7 +244,7 @@ fn saved() -> SavedMap<3> {
 
 fn bytes_of<const C: usize>(map: &SavedMap<C>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    file::write(&map, &mut bytes).unwrap();
+    file::write(map, &mut bytes).unwrap();
     bytes
 }
 
