@@ -63,7 +63,7 @@ impl Colour {
     /// sRGB colour is as red as) and is 0 instead.
     ///
     /// # Errors
-    /// A temperature outside [`CCT_K`].
+    /// A temperature outside `CCT_K`.
     pub fn black_body(cct_k: f64) -> Result<(Self, bool), Invalid> {
         CCT_K.check("cct_k", cct_k)?;
         let [x, y] = planckian_xy(cct_k);

@@ -127,7 +127,7 @@ pub trait Emits {
         None
     }
 
-    /// Corners, in order around, of the convex plane figure in which photons start, as [`area::LitShape::outline`]; none for a
+    /// Corners, in order around, of the convex plane figure in which photons start, as `area::LitShape::outline`; none for a
     /// point.
     fn outline(&self) -> Vec<DVec3> {
         Vec::new()

@@ -63,7 +63,7 @@ impl Heightfield {
     /// from the corner's z.
     ///
     /// # Errors
-    /// Numbers out of range, no cells or more than [`MOST_CELLS`], wavelengths too short for f64 over this rectangle.
+    /// Numbers out of range, no cells or more than `MOST_CELLS`, wavelengths too short for f64 over this rectangle.
     pub fn new(origin: DVec3, size: DVec2, cells: [u32; 2], formula: Formula) -> Result<Self, Invalid> {
         COORDINATE.vector("origin", origin)?;
         LENGTH.check("size", size.x)?;

@@ -37,7 +37,7 @@ impl Noise {
     /// A noise of these octaves whose amplitudes sum to `amplitude_m` (m).
     ///
     /// # Errors
-    /// No octave of an amplitude above 0, more than [`MOST_OCTAVES`], numbers out of range.
+    /// No octave of an amplitude above 0, more than `MOST_OCTAVES`, numbers out of range.
     pub fn new(seed: u64, octaves: Vec<Octave>, amplitude_m: f64) -> Result<Self, Invalid> {
         PEAK.check("amplitude", amplitude_m)?;
         for octave in &octaves {

@@ -15,7 +15,7 @@ pub struct Summary {
     pub revision: &'static str,
     /// `A`, `B` or `C`.
     pub photometric_type: &'static str,
-    /// Flux by the industry's trapezoid ([`flux::flux_lm`]), lm.
+    /// Flux by the industry's trapezoid (`flux::flux_lm`), lm.
     pub flux_lm: f64,
     /// `flux_lm` times ballast factor, and times field 12 in 1986 and 1991, lm.
     pub flux_with_factors_lm: f64,
@@ -31,11 +31,11 @@ pub struct Summary {
     pub vertical_angles: usize,
     /// Number of stored horizontal angles.
     pub horizontal_angles: usize,
-    /// Name of the symmetry ([`super::Symmetry::name`]).
+    /// Name of the symmetry (`Symmetry::name`).
     pub symmetry: &'static str,
     /// Shape and size of the luminous opening.
     pub luminous_opening: Opening,
-    /// Full angle at 50 % of the principal plane's maximum ([`lobe_angle_deg`]); `None` for a dark plane.
+    /// Full angle at 50 % of the principal plane's maximum (`lobe_angle_deg`); `None` for a dark plane.
     pub beam_angle_deg: Option<f64>,
     /// Full angle at 10 %.
     pub field_angle_deg: Option<f64>,

@@ -132,7 +132,7 @@ pub fn check(scene: &Scene) -> Result<()> {
 /// that of [`crate::run::trace`]. With `keep` the picture's photons are handed out too.
 ///
 /// # Errors
-/// Those of [`crate::run::trace`]; no camera, one that [`check`] refuses, or one that sees nothing (on a
+/// Those of [`crate::run::trace`]; no camera, one that `check` refuses, or one that sees nothing (on a
 /// surface); `keep` and more photons than the camera's memory holds.
 pub fn trace_picture(
     scene: &Scene,

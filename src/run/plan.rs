@@ -45,7 +45,7 @@ impl Plan {
     /// The plan for these settings: n = 2^m where no number of photons is asked for, else N / R rounded up.
     ///
     /// # Errors
-    /// No photons, no replicates, more than [`MAX_PHOTONS`] or [`MAX_REPLICATES`], and several replicates of
+    /// No photons, no replicates, more than `MAX_PHOTONS` or `MAX_REPLICATES`, and several replicates of
     /// a sequence that has no seed.
     pub fn new(settings: &Settings) -> Result<Self> {
         let Settings { photons, replicates, seed, algorithm } = *settings;

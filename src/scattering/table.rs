@@ -101,7 +101,7 @@ impl Lobe {
     ///
     /// # Errors
     /// Angles that do not rise or leave their range, azimuths that do not span a full turn, another number of channels than
-    /// 1 or 3, another number of values than the angles ask for, more than [`MAX_VALUES`], a value that is not finite, and
+    /// 1 or 3, another number of values than the angles ask for, more than `MAX_VALUES`, a value that is not finite, and
     /// declared scatter that is not finite or not one for each incidence.
     pub fn new(mut data: LobeData) -> Result<(Self, Option<Diagnostic>)> {
         check_angles("theta_i", &data.theta_i_deg, 1, 90.0)?;
@@ -129,7 +129,7 @@ impl Lobe {
     /// Readers call it before they make room for a table.
     ///
     /// # Errors
-    /// More than [`MAX_VALUES`].
+    /// More than `MAX_VALUES`.
     pub fn value_count(counts: [usize; 5]) -> Result<usize> {
         let product = counts.iter().try_fold(1usize, |n, c| n.checked_mul(*c));
         product.filter(|n| *n <= MAX_VALUES).ok_or_else(|| {
@@ -186,7 +186,7 @@ impl ScatterTable {
     /// Checks the lobes one by one and together; `warnings` are the reader's own, those found here are added.
     ///
     /// # Errors
-    /// Those of [`Lobe::new`]; no lobe; two lobes for the same light; more than [`MAX_VALUES`] in all.
+    /// Those of [`Lobe::new`]; no lobe; two lobes for the same light; more than `MAX_VALUES` in all.
     pub fn new(name: impl Into<String>, lobes: Vec<LobeData>, mut warnings: Vec<Diagnostic>) -> Result<Self> {
         if lobes.is_empty() {
             return Err(Diagnostic::new(Kind::Missing, "a table without lobes", "at least one lobe"));

@@ -72,10 +72,10 @@ impl ReceiverSpec {
         Ok(Self { name, surface: surface.into(), cells: None, side, events })
     }
 
-    /// The same with so many cells along u and v, [`DEFAULT_CELLS`] without; not on a mesh, which has one value a face.
+    /// The same with so many cells along u and v, `DEFAULT_CELLS` without; not on a mesh, which has one value a face.
     ///
     /// # Errors
-    /// No cells, or more than [`MOST_CELLS`].
+    /// No cells, or more than `MOST_CELLS`.
     pub fn with_cells(mut self, cells: [u32; 2]) -> Result<Self, Invalid> {
         let number = cells.into_iter().map(u64::from).product();
         if !(1..=MOST_CELLS).contains(&number) {

@@ -25,7 +25,7 @@ impl Dielectric {
     /// An interface: `ior` behind the outward normal, `ior_outside` before it.
     ///
     /// # Errors
-    /// Indices outside [`IOR`].
+    /// Indices outside `IOR`.
     pub fn new(ior: f64, ior_outside: f64) -> Result<Self, Invalid> {
         Ok(Self { ior: IOR.check("ior", ior)?, ior_outside: IOR.check("ior_outside", ior_outside)? })
     }

@@ -187,7 +187,7 @@ impl Material {
         self.kind() == Kind::Scattering
     }
 
-    /// The machinery it needs, of [`REQUIREMENTS`].
+    /// The machinery it needs, of `REQUIREMENTS`.
     pub fn requires(&self) -> &'static [&'static str] {
         ask!(self, requires())
     }

@@ -23,7 +23,7 @@ pub struct Census {
     pub dimension_histogram: Vec<u64>,
     /// Most coordinates one photon consumed.
     pub dimension_max: u32,
-    /// Coordinates consumed in all, by purpose in the order of [`Purpose::ALL`].
+    /// Coordinates consumed in all, by purpose in the order of `Purpose::ALL`.
     pub drawn_for: [u64; Purpose::ALL.len()],
     /// Exceptions.
     pub exceptions: Exceptions,

@@ -94,7 +94,7 @@ impl Format {
 /// Reads a scattering table, whatever its format.
 ///
 /// # Errors
-/// [`Kind::Io`] when it cannot be read, [`Kind::Limit`] beyond [`MAX_FILE_BYTES`], and those of [`parse`].
+/// [`Kind::Io`] when it cannot be read, `Kind::Limit` beyond `MAX_FILE_BYTES`, and those of [`parse`].
 pub fn read(path: impl AsRef<Path>) -> Result<ScatterTable> {
     let path = path.as_ref();
     let bytes = read_capped(path, MAX_FILE_BYTES).map_err(|d| d.in_file(path))?;
@@ -104,7 +104,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<ScatterTable> {
 /// Reads the bytes of a scattering table, whatever its format; `name` stands in messages.
 ///
 /// # Errors
-/// Those of [`Format::of`] and of the format's reader; [`Kind::Limit`] beyond [`MAX_FILE_BYTES`].
+/// Those of `Format::of` and of the format's reader; `Kind::Limit` beyond `MAX_FILE_BYTES`.
 pub fn parse(bytes: &[u8], name: &str) -> Result<ScatterTable> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         let found = format!("more than {MAX_FILE_BYTES} bytes");

@@ -42,7 +42,7 @@ pub(crate) type TiltFile<'a> = &'a mut dyn FnMut(&str) -> Result<Rc<[u8]>>;
 /// Reads a photometric file; a tilt file is looked for beside it.
 ///
 /// # Errors
-/// [`Kind::Io`] when it cannot be read, [`Kind::Limit`] beyond [`MAX_FILE_BYTES`], and those of [`parse`].
+/// [`Kind::Io`] when it cannot be read, `Kind::Limit` beyond `MAX_FILE_BYTES`, and those of [`parse`].
 pub fn read(path: impl AsRef<Path>) -> Result<Photometry> {
     let path = path.as_ref();
     let bytes = read_capped(path, MAX_FILE_BYTES).map_err(|d| d.in_file(path))?;

@@ -53,7 +53,7 @@ pub struct SceneFile {
 ///
 /// # Errors
 /// Every error of the file, in its order: syntax, unknown keys and words, missing keys, values out of range,
-/// names used twice or not at all, files that are not there. At most [`document::MOST_ERRORS`], and one that counts the rest.
+/// names used twice or not at all, files that are not there. At most `document::MOST_ERRORS`, and one that counts the rest.
 pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
     let path = path.as_ref();
     let name = path.display().to_string();
@@ -76,7 +76,7 @@ pub fn read_scene(path: impl AsRef<Path>) -> Result<Scene, Vec<Diagnostic>> {
 /// The scene of a text; paths are relative to `folder`.
 ///
 /// # Errors
-/// Those of [`parse`] and [`SceneFile::build`].
+/// Those of `parse` and [`SceneFile::build`].
 pub fn parse_scene(text: &str, folder: impl Into<PathBuf>) -> Result<Scene, Vec<Diagnostic>> {
     parse(text, "scene", Base::Directory(folder.into()))?.build()
 }
@@ -84,7 +84,7 @@ pub fn parse_scene(text: &str, folder: impl Into<PathBuf>) -> Result<Scene, Vec<
 /// The scene inside the program, `scenes/wavy_glass.toml`.
 ///
 /// # Errors
-/// None, as the tests show; they are those of [`parse`].
+/// None, as the tests show; they are those of `parse`.
 pub fn built_in() -> Result<SceneFile, Vec<Diagnostic>> {
     let text = include_str!("../../../scenes/wavy_glass.toml");
     parse(text, "wavy_glass.toml (built in)", Base::BuiltIn)

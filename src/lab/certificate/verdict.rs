@@ -117,7 +117,7 @@ pub struct Certificate {
     /// Draws judged.
     #[serde(rename = "samples")]
     pub draws: u64,
-    /// Further draws, in as many randomisations as `replicates` says, behind [`TestName::CellMeans`].
+    /// Further draws, in as many randomisations as `replicates` says, behind `TestName::CellMeans`.
     #[serde(rename = "replicate_samples")]
     pub replicate_draws: u64,
     /// Randomisations of these.
@@ -130,7 +130,7 @@ pub struct Certificate {
     /// Draws outside the table; one is enough to fail.
     #[serde(rename = "samples_outside")]
     pub draws_outside: u64,
-    /// The tests, in the order of [`TestName`]; in JSON an object by name.
+    /// The tests, in the order of `TestName`; in JSON an object by name.
     #[serde(serialize_with = "by_name")]
     pub tests: Vec<Test>,
     /// Discrepancy in the unit square.

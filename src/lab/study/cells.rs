@@ -29,7 +29,7 @@ impl<'s> Grids<'s> {
     /// by faces.
     ///
     /// # Errors
-    /// No receiver, no grid, a grid of no cells or more than [`MOST_CELLS`] a side.
+    /// No receiver, no grid, a grid of no cells or more than `MOST_CELLS` a side.
     pub fn new(scene: &'s Scene, cells: &[u32]) -> Result<Self> {
         let fail = |found: &str, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
         if scene.receivers.is_empty() {

@@ -32,7 +32,7 @@ pub const SEQUENCE: Sequence = Sequence::HaltonRotation;
 /// Seed of references, unless a run has it.
 const SEED: u64 = 0x7265_6665_7265_6e63;
 
-/// What a reference is made of: 2^m Halton points in each of [`REPLICATES`] rotations.
+/// What a reference is made of: 2^m Halton points in each of `REPLICATES` rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReferencePlan {
     /// Seed of the rotations.
@@ -45,7 +45,7 @@ impl ReferencePlan {
     /// A reference of at least `photons` in all, under a seed that is none of `seeds`, those of the runs.
     ///
     /// # Errors
-    /// No photons, and more than [`MOST_REFERENCE_PHOTONS`].
+    /// No photons, and more than `MOST_REFERENCE_PHOTONS`.
     pub fn new(photons: u64, seeds: &[u64]) -> Result<Self> {
         if !(1..=MOST_REFERENCE_PHOTONS).contains(&photons) {
             let found = format!("{photons} reference photons");
