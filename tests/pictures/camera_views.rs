@@ -83,8 +83,8 @@ fn a_plate_below_a_round_light_has_the_form_factor_of_the_disc_near_and_far() {
             ),
             floor("plate", "white", [r, 0.0, 0.0], 0.1),
         ];
-        // From high enough for the pixel to lie on the plate.
-        let spec = CameraSpec { samples: 1024, ..narrow([r + 3.0, 0.0, 2.5], [r, 0.0, 0.0]) };
+        // A pixel so small that the light is the same all over it.
+        let spec = CameraSpec { samples: 1024, fov_deg: 0.01, ..narrow([r + 3.0, 0.0, 2.5], [r, 0.0, 0.0]) };
         let seen = pixel(&scene(&text), &spec, 4, 0.1);
         let (h2, r2) = (4.0 * h * h, 4.0 * r * r);
         let sum = 1.0 + h2 + r2;

@@ -201,9 +201,9 @@ fn defaults_are_as_documented() {
     };
     is_turned(first, "spot.ies", DVec3::NEG_Z, DVec3::Y);
     is_turned(second, "spot.ies", DVec3::NEG_Y, DVec3::X);
-    // 3 m along aim x up, 4 m along up: the corners, in order around.
+    // 3 m along aim x up, 4 m along up: corners and middles of edges, in order around.
     let outline = beam.outline();
-    let [a, b, c] = [outline[0], outline[1], outline[2]];
+    let [a, b, c] = [outline[1], outline[3], outline[5]];
     let (width, height) = if (b - a).z.abs() < 1e-14 { (b - a, c - b) } else { (c - b, b - a) };
     assert!((height.abs() - DVec3::Z * 4.0).length() < 1e-14 && (width.length() - 3.0).abs() < 1e-14);
     assert!(width.dot(DVec3::new(1.0, 1.0, 0.0)).abs() < 1e-14);
@@ -228,7 +228,7 @@ fn every_example_of_the_manual_reads() {
     let parts = blocks[1..].concat() + "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n";
     let file = parse(&parts, "manual", Base::BuiltIn).unwrap();
     assert_eq!(file.run.photons, Some(1 << 24));
-    for (header, count) in [("[[emitter]]", 4), ("[[surface]]", 8), ("[[receiver]]", 2)] {
+    for (header, count) in [("[[emitter]]", 5), ("[[surface]]", 8), ("[[receiver]]", 2)] {
         assert_eq!(parts.matches(header).count(), count, "{header}");
     }
 }
