@@ -53,7 +53,7 @@ fn short<'c>(criterion: &'c mut Criterion, name: &str) -> BenchmarkGroup<'c, Wal
 fn arriving(i: u64) -> Incidence {
     let shift = (i % 64) as f64 / 640.0;
     let direction = DVec3::new(0.6 + shift, 0.2 - shift, -0.75).normalize();
-    Incidence { direction, facet: DVec3::Z, smooth: DVec3::Z, front: true }
+    Incidence { direction, facet: DVec3::Z, smooth: DVec3::Z, front: true, indices: [1.0; 2] }
 }
 
 /// One batch of scatterings from photon `first` on.

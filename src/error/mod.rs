@@ -5,6 +5,7 @@
 //! lists and returned, never printed by the library.
 
 pub mod invalid;
+pub mod warning;
 
 use std::fmt;
 use std::path::Path;

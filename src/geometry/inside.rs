@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Geometry, Mesh, Shape, SurfaceId};
+use super::{Body, Geometry, Mesh, Shape, SurfaceId};
 
 impl Geometry {
     /// Whether `point` (m) is behind a surface, opposite to where the outward normal points. An open surface has
@@ -22,10 +22,20 @@ impl Geometry {
         }
     }
 
-    /// All closed surfaces a point is behind: the start of [`super::Whereabouts`].
+    /// All closed surfaces a point is behind, one of several layers as often as it winds around the point: the start of
+    /// [`super::Whereabouts`].
     pub fn all_behind(&self, point: DVec3) -> Vec<SurfaceId> {
         let ids = (0..self.surfaces.len() as u32).map(SurfaceId);
-        ids.filter(|&s| self.is_behind(point, s)).collect()
+        ids.flat_map(|s| std::iter::repeat_n(s, self.times_behind(point, s))).collect()
+    }
+
+    fn times_behind(&self, point: DVec3, surface: SurfaceId) -> usize {
+        match (&self.surfaces[surface.0 as usize].shape, self.info[surface.0 as usize].body) {
+            (Shape::Mesh(m), Body::Layered) if m.topology().signed_volume_m3 >= 0.0 => {
+                winding_number(m, point).round().max(0.0) as usize
+            }
+            _ => usize::from(self.is_behind(point, surface)),
+        }
     }
 }
 
@@ -67,7 +77,7 @@ impl Geometry {
 }
 
 /// Distance of a point from a triangle (m). (C. Ericson, Real-Time Collision Detection, 2005, section 5.1.5.)
-fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+pub(super) fn distance_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let (ab, ac) = (b - a, c - a);
     let normal = ab.cross(ac);
     let area = normal.length();

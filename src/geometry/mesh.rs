@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::mesh_check::{Topology, inspect};
-use super::{MAX_COORDINATE_M, Transform};
+use super::{Body, MAX_COORDINATE_M, Transform};
 use crate::error::invalid::vector;
 use crate::error::{Diagnostic, Invalid};
 
@@ -101,6 +101,26 @@ impl Mesh {
     /// What was found out about edges, orientation and volume.
     pub fn topology(&self) -> &Topology {
         &self.topology
+    }
+
+    /// How it has an inside, if it is closed.
+    pub(crate) fn body(&self) -> Body {
+        if self.topology.is_layered() { Body::Layered } else { Body::Simple }
+    }
+
+    /// The same surface whose other side is the front.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let turned = |list: &[[u32; 3]]| list.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+        let mut topology = self.topology.clone();
+        topology.signed_volume_m3 = -topology.signed_volume_m3;
+        Self {
+            triangles: turned(&self.triangles),
+            normals: self.normals.iter().map(|n| -*n).collect(),
+            normal_indices: turned(&self.normal_indices),
+            topology,
+            ..self.clone()
+        }
     }
 
     /// Whether the mesh has smooth normals.

@@ -28,9 +28,16 @@ pub struct Topology {
     /// Volume enclosed (m3): negative where the normals point inward; of no meaning for an open mesh.
     pub signed_volume_m3: f64,
     triangles: usize,
+    /// Parts that share no vertex.
+    parts: usize,
 }
 
 impl Topology {
+    /// Whether it may have more than one layer: several parts, or edges of more than two faces.
+    pub(crate) fn is_layered(&self) -> bool {
+        self.parts > 1 || self.non_manifold_edges > 0
+    }
+
     /// No open edge and every edge run through equally often in both directions: there is an inside.
     pub fn is_closed(&self) -> bool {
         self.triangles > 0 && self.open_edges == 0 && self.inconsistent_edges == 0
@@ -160,7 +167,28 @@ pub(crate) fn inspect(vertices: &[DVec3], triangles: &[[u32; 3]], face_numbers: 
     found.first_non_manifold = number(first_many);
     found.first_inconsistent = number(first_twisted);
     found.duplicates = duplicates(triangles, face_numbers);
+    found.parts = parts(vertices.len(), triangles);
     found
+}
+
+/// Number of parts that share no vertex. (Union by the lower number, with path halving.)
+fn parts(vertices: usize, triangles: &[[u32; 3]]) -> usize {
+    let mut above: Vec<u32> = (0..vertices as u32).collect();
+    let root = |above: &mut Vec<u32>, mut v: u32| {
+        while above[v as usize] != v {
+            above[v as usize] = above[above[v as usize] as usize];
+            v = above[v as usize];
+        }
+        v
+    };
+    for [a, b, c] in triangles {
+        for v in [b, c] {
+            let (p, q) = (root(&mut above, *a), root(&mut above, *v));
+            above[p.max(q) as usize] = p.min(q);
+        }
+    }
+    let used: std::collections::BTreeSet<u32> = triangles.iter().map(|t| root(&mut above, t[0])).collect();
+    used.len()
 }
 
 fn duplicates(triangles: &[[u32; 3]], face_numbers: &[u32]) -> Vec<(u32, u32)> {

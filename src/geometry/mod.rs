@@ -10,7 +10,7 @@
 
 mod box_mesh;
 mod bvh;
-mod coincident;
+mod contact;
 mod exact;
 mod height_image;
 mod heightfield;
@@ -19,11 +19,13 @@ pub mod mesh;
 mod mesh_check;
 mod nearest;
 mod noise;
+mod overlap;
 mod paraboloid;
 mod ray;
 mod rectangle;
 mod shape;
 mod sphere;
+mod touching;
 mod transform;
 mod triangle;
 mod whereabouts;
@@ -32,7 +34,8 @@ mod wide;
 use glam::DVec3;
 
 pub use box_mesh::box_mesh;
-pub use coincident::coincident_surfaces;
+pub use contact::{Bond, Contact, Touch};
+use contact::Contacts;
 pub use height_image::{HEIGHT, HeightImage};
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
@@ -42,7 +45,7 @@ pub use rectangle::Rectangle;
 pub use shape::Shape;
 pub use sphere::Sphere;
 pub use transform::{SCALE, Transform};
-pub use whereabouts::{Side, Whereabouts};
+pub use whereabouts::{Body, Met, Side, Whereabouts};
 
 use crate::error::invalid::Interval;
 use crate::error::{Diagnostic, Kind, Result};
@@ -95,8 +98,18 @@ pub struct Hit {
     /// The ray arrives on the side the outward normal points to. Exact; next to edge-on the sign of
     /// `direction . normal` may disagree by rounding.
     pub front: bool,
-    /// The surface is closed: it has an inside, and the photon's state follows it.
-    pub closed: bool,
+    /// Whether the surface has an inside, which the photon's state follows.
+    pub body: Body,
+    /// Faces in contact with this one here.
+    pub touch: Option<Touch>,
+}
+
+impl Hit {
+    /// The side that a ray goes on to which passes unhindered.
+    #[inline]
+    pub fn other_side(&self) -> Side {
+        if self.front { Side::Back } else { Side::Front }
+    }
 }
 
 /// What the search needs to know of a surface.
@@ -104,8 +117,12 @@ pub struct Hit {
 struct Info {
     /// Place of the name among all names.
     rank: u32,
-    closed: bool,
+    body: Body,
     first_primitive: u32,
+    /// Whether any of its faces is in contact with another surface's.
+    touches: bool,
+    /// As [`Bond::is_clear`].
+    is_clear: bool,
 }
 
 /// All surfaces of a scene, ready for rays.
@@ -119,18 +136,27 @@ pub struct Geometry {
     bound_cap: f64,
     bounds: (DVec3, DVec3),
     avx2: bool,
+    contacts: Contacts,
 }
 
 /// Primitives a scene may have.
 const MAX_PRIMITIVES: usize = 1 << 31;
 
 impl Geometry {
-    /// Builds the search structure.
+    /// Builds the search structure. What lies in one place is not looked for.
     ///
     /// # Errors
     /// Two surfaces of one name; more than 2^31 primitives or surfaces.
     pub fn build(surfaces: Vec<Surface>) -> Result<Self> {
-        let info = describe(&surfaces)?;
+        Self::joined(surfaces, &[])
+    }
+
+    /// Builds the search structure, with the contacts between surfaces that are bound in these ways, one a surface.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    pub fn joined(surfaces: Vec<Surface>, bonds: &[Bond]) -> Result<Self> {
+        let mut info = describe(&surfaces)?;
         let world = |s: &Surface, face: usize| s.shape.face_bounds(face);
         let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for s in &surfaces {
@@ -152,7 +178,18 @@ impl Geometry {
                 owner.push(i as u32);
             }
         }
-        let tree = WideTree::new(&bvh::build(&boxes), |block, lane, primitive| {
+        for (info, bond) in info.iter_mut().zip(bonds) {
+            info.is_clear = bond.is_clear;
+        }
+        let binary = bvh::build(&boxes);
+        let contacts = Contacts::find(&surfaces, &info, bonds, (&binary, &boxes, &owner));
+        for contact in contacts.pairs() {
+            contact.surfaces.iter().for_each(|s| info[s.0 as usize].touches = true);
+        }
+        for [s, _] in contacts.cuts().iter().filter(|[s, t]| s == t) {
+            info[s.0 as usize].body = Body::Layered;
+        }
+        let tree = WideTree::new(&binary, |block, lane, primitive| {
             let surface = owner[primitive as usize];
             block.primitive[lane] = primitive;
             block.surface[lane] = surface;
@@ -169,12 +206,23 @@ impl Geometry {
             }
         });
         let bound_cap = libm::scalbn(1.0 / normalisation.scale, -22);
-        Ok(Self { surfaces, info, tree, normalisation, bound_cap, bounds: (lo, hi), avx2: has_avx2() })
+        Ok(Self { surfaces, info, tree, normalisation, bound_cap, bounds: (lo, hi), avx2: has_avx2(), contacts })
     }
 
     /// The surfaces, by [`SurfaceId`].
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
+    }
+
+    /// Pairs of surfaces in contact.
+    pub fn contacts(&self) -> &[Contact] {
+        self.contacts.pairs()
+    }
+
+    /// Pairs of transparent closed surfaces whose faces cut each other, the lower number first; twice the same for one that
+    /// cuts itself.
+    pub fn cuts(&self) -> &[[SurfaceId; 2]] {
+        self.contacts.cuts()
     }
 
     /// The surface of this name.
@@ -184,7 +232,7 @@ impl Geometry {
 
     /// Whether the surface has an inside (no open edge, consistently oriented; a sphere).
     pub fn is_closed(&self, surface: SurfaceId) -> bool {
-        self.info.get(surface.0 as usize).is_some_and(|i| i.closed)
+        self.info.get(surface.0 as usize).is_some_and(|i| i.body != Body::Open)
     }
 
     /// Least and greatest corner of everything (m); zeros for an empty scene.
@@ -226,7 +274,7 @@ fn describe(surfaces: &[Surface]) -> Result<Vec<Info>> {
     let mut first = 0usize;
     let mut info = Vec::with_capacity(surfaces.len());
     for (i, s) in surfaces.iter().enumerate() {
-        info.push(Info { rank: rank[i], closed: s.shape.is_closed(), first_primitive: first as u32 });
+        info.push(Info { rank: rank[i], body: s.shape.body(), first_primitive: first as u32, touches: false, is_clear: false });
         first += s.shape.face_count();
         if first > MAX_PRIMITIVES {
             return Err(Diagnostic::new(

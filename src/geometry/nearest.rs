@@ -7,7 +7,7 @@ use super::sphere::Root;
 use super::triangle::{Block, Crossing, View, coordinate_error};
 use super::whereabouts::Verdict;
 use super::wide::{BoxRay, Visitor};
-use super::{Geometry, Hit, Shape, SurfaceId, Whereabouts};
+use super::{Geometry, Hit, Info, Shape, SurfaceId, Whereabouts};
 
 /// A candidate that is nearest so far.
 #[derive(Debug, Clone, Copy)]
@@ -113,7 +113,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             }
             here = t <= bound;
         }
-        let verdict = self.at.judge(SurfaceId(surface), info.closed, crossing.front, here);
+        let verdict = self.at.judge(SurfaceId(surface), info.body, crossing.front, here);
         if verdict == Verdict::Contradicts {
             self.skipped.push(t, self.nearest_t);
             return;
@@ -240,7 +240,10 @@ impl Geometry {
     /// `nearest(..).t < distance`, sooner answered. `at` is where the ray starts, as for [`Self::nearest`], by whose rules
     /// candidates count.
     pub fn occluded(&self, origin: DVec3, direction: DVec3, distance: f64, at: &Whereabouts) -> bool {
-        if !at.behind().is_empty() {
+        if at.in_film().is_some() {
+            return distance > 0.0;
+        }
+        if at.is_behind_any() {
             // Whether a rim has to be looked for depends on what lies beyond.
             return self.nearest(origin, direction, at, &mut 0).is_some_and(|hit| hit.t < distance);
         }
@@ -295,6 +298,9 @@ impl Geometry {
         skipped: &mut u64,
         tree: bool,
     ) -> Option<Hit> {
+        if let Some((left, next)) = at.in_film() {
+            return Some(self.across_film(origin, left, next));
+        }
         let ray = Ray::new(origin, direction)?;
         let boxes = BoxRay::new(&ray, &self.normalisation)?;
         let rays = (&ray, &boxes);
@@ -302,10 +308,13 @@ impl Geometry {
         self.run(&mut search, tree);
         *skipped += search.skipped.before(search.nearest_t);
         let mut best = search.best;
-        if !at.behind().is_empty() {
+        if at.is_behind_any() {
             best = self.not_through_the_rim(best, rays, at, skipped, tree);
         }
-        best.map(|b| self.finish(&b, &ray))
+        let best = best?;
+        let touches = self.info[best.surface as usize].touches;
+        let hit = self.finish(&best, &ray);
+        Some(if touches { self.in_contact(hit, &ray, at) } else { hit })
     }
 
     /// A photon that has entered a closed surface must leave it: where no exact crossing is left, the far side is
@@ -386,6 +395,16 @@ impl Geometry {
         }
     }
 
+    /// A hit on a primitive that the ray is known to meet.
+    pub(super) fn hit_on(&self, primitive: u32, crossing: Crossing, ray: &Ray) -> Hit {
+        let surface = self.surface_of(primitive);
+        let Info { rank, first_primitive, .. } = self.info[surface as usize];
+        let corners = self.surfaces[surface as usize].shape.triangle((primitive - first_primitive) as usize);
+        let corners = corners.map_or([[0.0; 3]; 3], |corners| corners.map(|v| v.to_array()));
+        let (view, t) = (View::new(&corners, ray), crossing.t.max(0.0));
+        self.finish(&Best { t, rank, primitive, surface, crossing, corners, view }, ray)
+    }
+
     /// Position and normals of the chosen candidate.
     #[inline(always)]
     fn finish(&self, best: &Best, ray: &Ray) -> Hit {
@@ -413,10 +432,7 @@ impl Geometry {
                 (q, p.normal(q), p.bound(ray))
             }
         };
-        let shading_normal = match shape {
-            Shape::Mesh(m) => m.shading_normal(face as usize, [v, w], normal),
-            Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Paraboloid(_) => normal,
-        };
+        let shading_normal = shape.shading_normal(face as usize, [v, w], normal);
         Hit {
             t: best.t,
             t_bound: bound.min(self.bound_cap),
@@ -427,7 +443,8 @@ impl Geometry {
             normal,
             shading_normal,
             front: best.crossing.front,
-            closed: info.closed,
+            body: info.body,
+            touch: None,
         }
     }
 }

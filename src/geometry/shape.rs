@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Mesh, Paraboloid, Rectangle, Sphere, Transform};
+use super::{Body, Mesh, Paraboloid, Rectangle, Sphere, Transform};
 use crate::error::Invalid;
 
 /// A shape in world space. Triangles where there is no formula, exact where there is one.
@@ -34,6 +34,24 @@ impl Shape {
             Self::Mesh(m) => m.topology().is_closed(),
             Self::Sphere(_) => true,
             Self::Rectangle(_) | Self::Paraboloid(_) => false,
+        }
+    }
+
+    /// Whether and how it has an inside.
+    pub fn body(&self) -> Body {
+        match self {
+            Self::Mesh(m) if m.topology().is_closed() => m.body(),
+            Self::Sphere(_) => Body::Simple,
+            Self::Mesh(_) | Self::Rectangle(_) | Self::Paraboloid(_) => Body::Open,
+        }
+    }
+
+    /// What a closed shape holds, m3; 0 for an open one.
+    pub fn volume_m3(&self) -> f64 {
+        match self {
+            Self::Mesh(m) if m.topology().is_closed() => m.topology().signed_volume_m3.abs(),
+            Self::Sphere(s) => 4.0 / 3.0 * std::f64::consts::PI * s.radius().powi(3),
+            Self::Mesh(_) | Self::Rectangle(_) | Self::Paraboloid(_) => 0.0,
         }
     }
 
@@ -86,6 +104,15 @@ impl Shape {
             Self::Mesh(m) => Some(m.triangle(face)),
             Self::Rectangle(r) => Some(r.triangle(face)),
             Self::Sphere(_) | Self::Paraboloid(_) => None,
+        }
+    }
+
+    /// The smooth normal at a point of a face given by the weights of the second and third corner; `facet` where there is none.
+    #[inline(always)]
+    pub(crate) fn shading_normal(&self, face: usize, weights: [f64; 2], facet: DVec3) -> DVec3 {
+        match self {
+            Self::Mesh(m) => m.shading_normal(face, weights, facet),
+            Self::Rectangle(_) | Self::Sphere(_) | Self::Paraboloid(_) => facet,
         }
     }
 

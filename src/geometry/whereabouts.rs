@@ -1,8 +1,9 @@
 //! On which side of which surface a photon is: state that is carried, never recomputed.
 //!
 //! A photon that has just crossed a surface stands on it, give or take rounding, and no geometric test can say on
-//! which side. So the photon remembers: the primitives it met at this place, the side it left them on, and the closed
-//! surfaces it is behind. A candidate hit that contradicts this is the same crossing seen again, and is skipped.
+//! which side. So the photon remembers: the primitives it met at this place, the side it left them on, the closed
+//! surfaces it is behind, and, between two faces in contact, which of them comes next. A candidate hit that contradicts
+//! this is the same crossing seen again, and is skipped.
 
 use super::{Hit, SurfaceId};
 
@@ -15,11 +16,39 @@ pub enum Side {
     Back,
 }
 
-/// Primitives remembered at one place, and closed surfaces nested in one another.
+/// Primitives remembered at one place, and closed surfaces that are kept without an allocation.
 const CAPACITY: usize = 8;
 
+/// No primitive.
+const NO_FACE: u32 = u32::MAX;
+
+/// A face that a photon meets, from which side, and what kind of surface it belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Met {
+    /// Primitive number, counted through all surfaces.
+    pub primitive: u32,
+    /// The surface.
+    pub surface: SurfaceId,
+    /// The side of arrival is the one the outward normal points to.
+    pub front: bool,
+    /// Whether the surface has an inside.
+    pub body: Body,
+}
+
+/// Whether a surface has an inside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Body {
+    /// It has none.
+    Open,
+    /// A ray that goes in must come out before it can go in again.
+    Simple,
+    /// It has parts that may lie in one another, or cuts itself: a ray can go in several times before it comes out. Its
+    /// inside is where it winds around a point at least once.
+    Layered,
+}
+
 #[derive(Debug, Clone, Copy)]
-struct Met {
+struct Left {
     primitive: u32,
     surface: SurfaceId,
     side: Side,
@@ -27,19 +56,23 @@ struct Met {
     emerged: bool,
 }
 
-const NOBODY: Met =
-    Met { primitive: u32::MAX, surface: SurfaceId(u32::MAX), side: Side::Front, emerged: false };
+const NOBODY: Left =
+    Left { primitive: NO_FACE, surface: SurfaceId(u32::MAX), side: Side::Front, emerged: false };
 
 /// The side state of one photon.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Whereabouts {
-    met: [Met; CAPACITY],
+    met: [Left; CAPACITY],
     met_len: u8,
     behind_len: u8,
-    /// Closed surfaces entered beyond the list's capacity; while there are any, a closed surface that is not listed
-    /// is treated as open.
-    untracked: u32,
+    /// The medium outside all bodies, by its number in the scene.
+    ambient: u16,
+    /// The face that comes next, at this very place: the other one of two in contact.
+    next: u32,
+    /// Closed surfaces that it is behind; one of several layers as often as it was entered.
     behind: [SurfaceId; CAPACITY],
+    /// Those that `behind` has no room for.
+    more: Vec<SurfaceId>,
 }
 
 /// What the state says about a candidate.
@@ -57,53 +90,112 @@ impl Default for Whereabouts {
 }
 
 impl Whereabouts {
-    /// A photon in free space, behind these closed surfaces and in front of all others.
+    /// A photon in free space, behind these closed surfaces (as often as they are named) and in front of all others.
     pub fn start(behind: impl IntoIterator<Item = SurfaceId>) -> Self {
         let mut at = Self {
             met: [NOBODY; CAPACITY],
             met_len: 0,
             behind_len: 0,
-            untracked: 0,
+            ambient: 0,
+            next: NO_FACE,
             behind: [SurfaceId(u32::MAX); CAPACITY],
+            more: Vec::new(),
         };
         for surface in behind {
-            at.enter(surface);
+            at.push(surface);
         }
         at
     }
 
-    /// Records that the photon goes on from `hit` on this side of its surface.
+    /// The same in another medium outside all bodies.
+    #[must_use]
+    pub fn in_ambient(self, ambient: u16) -> Self {
+        Self { ambient, ..self }
+    }
+
+    /// The medium outside all bodies, by its number in the scene.
+    #[inline]
+    pub fn ambient(&self) -> u16 {
+        self.ambient
+    }
+
+    /// Enters another medium outside all bodies.
+    #[inline]
+    pub fn set_ambient(&mut self, ambient: u16) {
+        self.ambient = ambient;
+    }
+
+    /// Records that the photon goes on from `hit` on this side of its surface. What it meets jointly with that is crossed
+    /// with it, or not.
+    #[inline]
     pub fn leave(&mut self, hit: &Hit, side: Side) {
         // A step that is not surely longer than its error may have stayed at the same place.
         if hit.t > 4.0 * hit.t_bound {
             self.met_len = 0;
         }
+        let through = hit.front == (side == Side::Back);
+        let own = Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
+        self.next = NO_FACE;
+        if let Some(touch) = &hit.touch {
+            for other in touch.joint.iter().flatten() {
+                self.leave_face(*other, through, true);
+            }
+            if let Some(face) = touch.film {
+                // It stays before that face, whether it goes there now or not.
+                self.leave_face(Met { front: true, ..face }, false, true);
+                if side == Side::Front {
+                    self.next = face.primitive;
+                }
+            }
+        }
+        self.leave_face(own, through, hit.touch.is_some());
+    }
+
+    #[inline]
+    fn leave_face(&mut self, face: Met, through: bool, between: bool) {
+        let Met { primitive, surface, front, body } = face;
+        let side = if front == through { Side::Back } else { Side::Front };
         let mut n = usize::from(self.met_len);
+        // Between two faces in contact each may be met again and again.
+        let known = if between { self.met[..n].iter().position(|m| m.primitive == primitive) } else { None };
+        if let Some(known) = known {
+            self.met.copy_within(known + 1..n, known);
+            n -= 1;
+        }
         if n == CAPACITY {
             self.met.copy_within(1.., 0);
             n -= 1;
         }
-        let emerged = hit.closed && !hit.front && side == Side::Front;
-        self.met[n] = Met { primitive: hit.primitive, surface: hit.surface, side, emerged };
+        let closed = body != Body::Open;
+        let emerged = closed && !front && side == Side::Front;
+        self.met[n] = Left { primitive, surface, side, emerged };
         self.met_len = n as u8 + 1;
-        if hit.closed {
-            match side {
-                Side::Back => self.enter(hit.surface),
-                Side::Front => self.exit(hit.surface),
-            }
+        match (body, side) {
+            (Body::Open, _) => {}
+            (Body::Layered, _) if !through => {}
+            (Body::Simple, Side::Back) if self.is_behind(surface) => {}
+            (_, Side::Back) => self.push(surface),
+            (_, Side::Front) => self.remove(surface),
         }
     }
 
     /// Whether the photon is behind this closed surface.
     #[inline(always)]
     pub fn is_behind(&self, surface: SurfaceId) -> bool {
-        self.behind().contains(&surface)
+        let few = &self.behind[..usize::from(self.behind_len)];
+        few.contains(&surface) || (few.len() == CAPACITY && self.more.contains(&surface))
     }
 
-    /// The closed surfaces the photon is behind, outermost first.
+    /// Whether it is behind any.
     #[inline(always)]
-    pub fn behind(&self) -> &[SurfaceId] {
-        &self.behind[..usize::from(self.behind_len)]
+    pub fn is_behind_any(&self) -> bool {
+        self.behind_len > 0
+    }
+
+    /// The closed surfaces the photon is behind, one of several layers as often as it was entered.
+    #[inline]
+    pub fn behind(&self) -> impl Iterator<Item = SurfaceId> + '_ {
+        self.behind[..usize::from(self.behind_len)].iter().chain(&self.more).copied()
     }
 
     /// The surface just left.
@@ -111,26 +203,33 @@ impl Whereabouts {
         self.met[..usize::from(self.met_len)].last().map(|m| m.surface)
     }
 
-    fn enter(&mut self, surface: SurfaceId) {
-        if self.is_behind(surface) {
-            return;
-        }
+    /// The face just left, and the one in contact with it that comes next.
+    #[inline(always)]
+    pub(crate) fn in_film(&self) -> Option<(u32, u32)> {
+        let left = self.met[..usize::from(self.met_len)].last();
+        (self.next != NO_FACE).then(|| (left.map_or(NO_FACE, |m| m.primitive), self.next))
+    }
+
+    fn push(&mut self, surface: SurfaceId) {
         match self.behind.get_mut(usize::from(self.behind_len)) {
             Some(place) => {
                 *place = surface;
                 self.behind_len += 1;
             }
-            None => self.untracked += 1,
+            None => self.more.push(surface),
         }
     }
 
-    fn exit(&mut self, surface: SurfaceId) {
-        match self.behind().iter().position(|&s| s == surface) {
-            Some(i) => {
-                self.behind.copy_within(i + 1.., i);
-                self.behind_len -= 1;
+    fn remove(&mut self, surface: SurfaceId) {
+        let n = usize::from(self.behind_len);
+        if let Some(i) = self.behind[..n].iter().position(|&s| s == surface) {
+            self.behind.copy_within(i + 1..n, i);
+            match self.more.pop() {
+                Some(last) => self.behind[n - 1] = last,
+                None => self.behind_len -= 1,
             }
-            None => self.untracked = self.untracked.saturating_sub(1),
+        } else if let Some(i) = self.more.iter().position(|&s| s == surface) {
+            self.more.swap_remove(i);
         }
     }
 
@@ -142,20 +241,18 @@ impl Whereabouts {
 
     /// The side the state prescribes for a surface, if it does.
     #[inline(always)]
-    fn side_of_closed(&self, surface: SurfaceId, closed: bool) -> Option<Side> {
-        if !closed {
-            return None;
+    fn side_of(&self, surface: SurfaceId, body: Body) -> Option<Side> {
+        match (body, body != Body::Open && self.is_behind(surface)) {
+            (Body::Open, _) | (Body::Layered, true) => None,
+            (Body::Simple, true) => Some(Side::Back),
+            (_, false) => Some(Side::Front),
         }
-        if self.is_behind(surface) {
-            return Some(Side::Back);
-        }
-        (self.untracked == 0).then_some(Side::Front)
     }
 
     /// A candidate; `here` says that its distance is within its own rounding bound.
     #[inline(always)]
-    pub(crate) fn judge(&self, surface: SurfaceId, closed: bool, front: bool, here: bool) -> Verdict {
-        let mut side = self.side_of_closed(surface, closed);
+    pub(crate) fn judge(&self, surface: SurfaceId, body: Body, front: bool, here: bool) -> Verdict {
+        let mut side = self.side_of(surface, body);
         if here && self.met_len > 0 {
             let met = &self.met[..usize::from(self.met_len)];
             if side.is_none() {
@@ -163,7 +260,7 @@ impl Whereabouts {
             }
             // At a silhouette's vertex rounding can show front, back and front again. In and out at one place is
             // all a line can do there.
-            if front && met.iter().any(|m| m.emerged && m.surface == surface) {
+            if front && body != Body::Layered && met.iter().any(|m| m.emerged && m.surface == surface) {
                 return Verdict::Contradicts;
             }
         }

@@ -229,7 +229,7 @@ impl<'a> Report<'a> {
                     .map(|p| (p.label(), outcome.census.drawn_for[*p as usize] as f64 / photons))
                     .collect(),
             },
-            exceptions: outcome.census.exceptions,
+            exceptions: outcome.census.exceptions.clone(),
             receivers: scene
                 .receivers
                 .iter()

@@ -52,7 +52,7 @@ pub fn summary(
             outcome.census.dimension_mean(),
             outcome.census.dimension_max
         )?;
-        let exceptions = outcome.census.exceptions;
+        let exceptions = &outcome.census.exceptions;
         if exceptions.corrected_directions + exceptions.skipped_crossings > 0 {
             writeln!(
                 out,

@@ -12,9 +12,11 @@ pub mod plan;
 pub mod tracer;
 pub mod outcome;
 pub mod replicates;
+pub mod warnings;
 
 pub use algorithm::{Algorithm, Variant};
 pub use outcome::{Estimate, Outcome, StoppedBy};
 pub use plan::{MAX_PHOTONS, MAX_REPLICATES, Plan, Settings};
 pub use replicates::{trace, trace_by};
 pub use tracer::Tracer;
+pub use warnings::warnings;

@@ -38,6 +38,8 @@ pub struct Outcome {
     cells: Vec<Moments>,
     /// Of each receiver's total: one entry a receiver.
     totals: Moments,
+    /// Arrivals on the side of each receiver on which it does not count.
+    pub turned_away: Vec<u64>,
     /// Coordinates and exceptions.
     pub census: Census,
     /// Time of tracing, s.
@@ -68,6 +70,7 @@ impl Outcome {
             accounts: Moments::new(surfaces + 2),
             cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
             totals: Moments::new(scene.receivers.len()),
+            turned_away: vec![0; scene.receivers.len()],
             census: Census::default(),
             trace_s: 0.0,
             stopped_by: StoppedBy::Photons,
@@ -85,12 +88,16 @@ impl Outcome {
         for (receiver, moments) in self.cells.iter_mut().enumerate() {
             moments.absorb(receivers.counts(receiver).iter());
         }
+        for (sum, count) in self.turned_away.iter_mut().zip(receivers.turned_away().iter()) {
+            *sum += count;
+        }
         self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).iter().sum()));
     }
 
     /// Nothing again.
     pub(super) fn clear(&mut self) {
         (self.photons, self.replicates, self.census) = (0, 0, Census::default());
+        self.turned_away.fill(0);
         self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
         for moments in self.cells.iter_mut().chain([&mut self.accounts, &mut self.totals]) {
             moments.clear();

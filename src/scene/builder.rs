@@ -4,20 +4,42 @@ use std::collections::BTreeSet;
 
 use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::{Diagnostic, Kind, Place};
-use crate::geometry::{Geometry, Shape, Surface, coincident_surfaces};
+use crate::geometry::{Bond, Geometry, Mesh, Shape, Surface};
 use crate::surface::Material;
 
 use super::camera::Camera;
 use super::receiver::{Cells, MOST_CELLS, Receiver, ReceiverSpec};
-use super::{Identity, Scene, check};
+use super::media::{Media, Medium};
+use super::{Identity, Scene, check, contacts};
+
+/// How a surface is joined to those that it touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joint {
+    /// By a film of no thickness of the medium that surrounds both.
+    Film,
+    /// There is nothing between.
+    Glued,
+}
+
+/// What a surface is beside its shape and material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SurfaceOptions {
+    /// Of transparent bodies that overlap, the one of the highest priority fills the common space; of equal ones, the
+    /// smaller.
+    pub priority: i32,
+    /// How it is joined to what it touches: by a film, if nothing is said.
+    pub contact: Option<Joint>,
+}
 
 /// The parts of a scene so far. [`SceneBuilder::build`] makes the scene of them, or tells all that is wrong.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
-    surfaces: Vec<(Surface, Material, Option<Place>)>,
-    emitters: Vec<(String, Emitter, Colour, Option<Place>)>,
+    surfaces: Vec<(Surface, Material, SurfaceOptions, Option<Place>)>,
+    emitters: Vec<(String, Emitter, Colour, Option<Medium>, Option<Place>)>,
     receivers: Vec<(ReceiverSpec, Option<Place>)>,
     camera: Option<Camera>,
+    camera_medium: Option<Medium>,
+    ambient: Option<Medium>,
     compared_reflections: Option<u32>,
     place: Option<Place>,
 }
@@ -36,7 +58,39 @@ impl SceneBuilder {
 
     /// A surface of its own name and what it is made of.
     pub fn surface(&mut self, name: impl Into<String>, shape: Shape, material: Material) -> &mut Self {
-        self.surfaces.push((Surface { name: name.into(), shape }, material, self.place));
+        self.surface_with(name, shape, material, SurfaceOptions::default())
+    }
+
+    /// A surface that says how it goes with others.
+    pub fn surface_with(
+        &mut self,
+        name: impl Into<String>,
+        shape: Shape,
+        material: Material,
+        options: SurfaceOptions,
+    ) -> &mut Self {
+        self.surfaces.push((Surface { name: name.into(), shape }, material, options, self.place));
+        self
+    }
+
+    /// The medium in which the scene lies, instead of air.
+    pub fn ambient(&mut self, medium: Medium) -> &mut Self {
+        self.ambient = Some(medium);
+        self
+    }
+
+    /// The medium in which the last emitter stands, where it is behind an open transparent surface. (In a body it need not
+    /// be told.)
+    pub fn emitter_in(&mut self, medium: Medium) -> &mut Self {
+        if let Some((_, _, _, own, _)) = self.emitters.last_mut() {
+            *own = Some(medium);
+        }
+        self
+    }
+
+    /// The medium in which the camera stands, likewise.
+    pub fn camera_in(&mut self, medium: Medium) -> &mut Self {
+        self.camera_medium = Some(medium);
         self
     }
 
@@ -52,7 +106,7 @@ impl SceneBuilder {
         emitter: Emitter,
         colour: Colour,
     ) -> &mut Self {
-        self.emitters.push((name.into(), emitter, colour, self.place));
+        self.emitters.push((name.into(), emitter, colour, None, self.place));
         self
     }
 
@@ -77,27 +131,34 @@ impl SceneBuilder {
     /// The scene of these parts.
     ///
     /// # Errors
-    /// All that is wrong: names used twice, geometry that cannot be traced, coincident surfaces, an emitter on a surface or inside
-    /// a closed dielectric, a receiver without area or on no surface, too many cells, no flux.
+    /// All that is wrong: names used twice, geometry that cannot be traced, surfaces in one place or bodies that overlap where
+    /// no rule says which is first, an emitter on a surface or across one, a receiver without area or on no surface, too many cells, no flux.
     pub fn build(self) -> Result<Scene, Vec<Diagnostic>> {
         let mut errors = self.names_used_twice();
-        let (mut surfaces, mut materials, mut places) = (Vec::new(), Vec::new(), Vec::new());
-        for (surface, bsdf, place) in self.surfaces {
-            surfaces.push(surface);
-            materials.push(bsdf);
+        let (mut surfaces, mut materials) = (Vec::new(), Vec::new());
+        let (mut options, mut places, mut bonds) = (Vec::new(), Vec::new(), Vec::new());
+        for (surface, material, option, place) in self.surfaces {
+            let is_clear = material.is_transparent();
+            surfaces.push(if is_clear { outward(surface) } else { surface });
+            materials.push(material);
+            bonds.push(Bond { is_glued: contacts::is_glued(&option), is_clear });
+            options.push(option);
             places.push(place);
         }
-        // Neither of two surfaces in one place would be first.
-        for ([_, second], e) in coincident_surfaces(&surfaces) {
-            errors.push(e.placed(places[second]));
-        }
-        let geometry = match Geometry::build(surfaces) {
+        let geometry = match Geometry::joined(surfaces, &bonds) {
             Ok(geometry) => geometry,
             Err(e) => {
                 errors.push(e);
                 return Err(errors);
             }
         };
+        for (surface, e) in contacts::errors(&geometry, &materials, &options) {
+            errors.push(e.placed(places[surface.0 as usize]));
+        }
+        let warnings = contacts::warnings(&geometry, &materials, &options);
+        let warnings = warnings.into_iter().map(|(s, w)| w.placed(places[s.0 as usize])).collect();
+        let ambient = self.ambient.unwrap_or_else(Medium::air);
+        let mut media = Media::new(ambient, &geometry, &materials, &options);
         let (mut receivers, mut cells) = (Vec::new(), 0u64);
         for (spec, place) in &self.receivers {
             let before = cells;
@@ -117,15 +178,17 @@ impl SceneBuilder {
         }
         let (mut emitter_names, mut emitters, mut emitter_colours) = (Vec::new(), Vec::new(), Vec::new());
         let mut starts = Vec::new();
-        for (name, emitter, colour, place) in self.emitters {
-            match check::start(&name, &emitter, &geometry, &materials) {
-                Ok(start) => starts.push(start),
+        for (name, emitter, colour, medium, place) in self.emitters {
+            let ambient = medium.map_or(0, |medium| media.number(medium));
+            match check::start(&name, &emitter, &geometry) {
+                Ok(start) => starts.push(start.in_ambient(ambient)),
                 Err(e) => errors.push(e.placed(place)),
             }
             emitter_names.push(name);
             emitters.push(emitter);
             emitter_colours.push(colour);
         }
+        let camera_ambient = self.camera_medium.map_or(0, |medium| media.number(medium));
         match Emitters::new(emitters) {
             Ok(emitters) if errors.is_empty() => Ok(Scene {
                 geometry,
@@ -135,7 +198,9 @@ impl SceneBuilder {
                 compared_reflections: self.compared_reflections,
                 camera: self.camera,
                 identity: Identity::default(),
-                warnings: Vec::new(),
+                warnings,
+                media,
+                camera_ambient,
                 materials,
                 starts,
                 emitter_colours,
@@ -150,7 +215,7 @@ impl SceneBuilder {
 
     /// An error for each name of emitters or receivers that is another's. (Surfaces' names are the geometry's to check.)
     fn names_used_twice(&self) -> Vec<Diagnostic> {
-        let emitters = self.emitters.iter().map(|(name, _, _, place)| ("emitter", name.clone(), place));
+        let emitters = self.emitters.iter().map(|(name, _, _, _, place)| ("emitter", name.clone(), place));
         // Cases are not told apart: some file systems don't, and these names become file names.
         let receivers = self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_lowercase(), place));
         let mut known = BTreeSet::new();
@@ -162,5 +227,14 @@ impl SceneBuilder {
                 Diagnostic::new(Kind::Range, found, required).placed(*place)
             })
             .collect()
+    }
+}
+
+/// The surface of a body with its front outside, which is the same body.
+fn outward(surface: Surface) -> Surface {
+    let is_inward = |mesh: &Mesh| mesh.topology().is_closed() && mesh.topology().signed_volume_m3 < 0.0;
+    match surface.shape {
+        Shape::Mesh(mesh) if is_inward(&mesh) => Surface { shape: mesh.reversed().into(), ..surface },
+        shape => Surface { shape, ..surface },
     }
 }

@@ -1,24 +1,17 @@
-//! Emitters where none may be: on a surface, inside glass, across a closed surface.
+//! Emitters where none may be: on a surface, across a closed surface.
 
 use crate::emitter::{Emits, Emitter};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, SurfaceId, Whereabouts};
-use crate::surface::Material;
 
 use super::figure::{Contact, Figure};
 
 /// The side state of photons of an emitter.
 ///
 /// # Errors
-/// An emitter on a surface, where no side is right; inside a closed dielectric, because there is no medium to start
-/// in; one whose photons start on both sides of a closed surface, because that touches or cuts the figure that they start in.
+/// An emitter on a surface, where no side is right; one whose photons start on both sides of a closed surface, because that touches or cuts the figure that they start in.
 /// (An open surface may cut it: there is no side that its photons could be wrong about.)
-pub fn start(
-    name: &str,
-    emitter: &Emitter,
-    geometry: &Geometry,
-    materials: &[Material],
-) -> Result<Whereabouts> {
+pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry) -> Result<Whereabouts> {
     let centre = emitter.position();
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
     let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
@@ -31,14 +24,6 @@ pub fn start(
         );
     }
     let behind = geometry.all_behind(centre);
-    for &surface in &behind {
-        if materials[surface.0 as usize].is_transparent() && geometry.is_closed(surface) {
-            return fail(
-                format!("emitter \"{name}\" inside the dielectric \"{}\"", label(surface)),
-                "an emitter outside closed dielectrics",
-            );
-        }
-    }
     let Some(figure) = figure else { return Ok(Whereabouts::start(behind)) };
     if figure.rim().any(|point| geometry.all_behind(point) != behind) {
         return fail(

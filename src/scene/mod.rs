@@ -6,17 +6,22 @@
 pub mod builder;
 pub mod camera;
 pub mod check;
+mod contacts;
 mod figure;
+pub mod media;
 pub mod receiver;
 pub mod requires;
+
+use glam::DVec3;
 
 use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::Diagnostic;
 use crate::geometry::{Geometry, SurfaceId, Whereabouts};
 use crate::surface::{self, Material};
 
-pub use builder::SceneBuilder;
+pub use builder::{Joint, SceneBuilder, SurfaceOptions};
 use camera::Camera;
+use media::{Interface, Media};
 use receiver::Receiver;
 
 /// What a run needs to be repeated, beside its settings: where the scene comes from. Empty for one made in code.
@@ -54,6 +59,10 @@ pub struct Scene {
     pub identity: Identity,
     /// What is allowed but probably not meant.
     pub warnings: Vec<Diagnostic>,
+    /// What fills the space.
+    pub media: Media,
+    /// The ambient medium at the camera.
+    pub camera_ambient: media::MediumId,
     materials: Vec<Material>,
     starts: Vec<Whereabouts>,
     emitter_colours: Vec<Colour>,
@@ -91,7 +100,26 @@ impl Scene {
     /// The side state of photons that leave an emitter.
     #[inline]
     pub fn start(&self, emitter: usize) -> Whereabouts {
-        self.starts[emitter]
+        self.starts[emitter].clone()
+    }
+
+    /// Whether anything stands between `origin` (m) and the point `distance` (m) away along the unit vector `direction`, for
+    /// a ray that starts in this state: any face but those with the same medium on both sides.
+    pub fn is_hidden(&self, mut origin: DVec3, direction: DVec3, mut distance: f64, mut at: Whereabouts) -> bool {
+        if !self.media.may_vanish() {
+            return self.geometry.occluded(origin, direction, distance, &at);
+        }
+        loop {
+            let Some(hit) = self.geometry.nearest(origin, direction, &at, &mut 0) else { return false };
+            if !(hit.t < distance) {
+                return false;
+            }
+            if self.media.interface(&hit, &at) != Interface::Nothing {
+                return true;
+            }
+            self.media.leave(&mut at, &hit, hit.other_side());
+            (origin, distance) = (hit.position, distance - hit.t);
+        }
     }
 
     /// Bytes held by geometry, emitters and scattering tables.

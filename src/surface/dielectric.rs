@@ -1,6 +1,7 @@
 //! A smooth interface between two transparent media: exact Fresnel reflection, refraction, total reflection.
 //!
-//! Scene text: `type = "dielectric"`, `ior` behind the outward normal, `ior_outside` (default 1) before it.
+//! Scene text: `type = "dielectric"`, `ior` behind the outward normal, `ior_outside` before it. What is on the two sides of a
+//! face, the state of the photon says ([`crate::scene::media`]).
 //! Unpolarised at every face: a slab then passes T = (1 - R)/(1 + R) with R the mean of s and p (METHOD 1).
 
 use glam::DVec3;
@@ -15,19 +16,21 @@ use crate::surface::{Event, Incidence, Kind, Model, Throughput, Way, Ways};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dielectric {
     ior: f64,
-    ior_outside: f64,
+    ior_outside: Option<f64>,
 }
 
 /// Refractive indices.
 pub const IOR: Interval = Interval { low: 1e-3, high: 1e3, words: "a refractive index from 0.001 to 1000" };
 
 impl Dielectric {
-    /// An interface: `ior` behind the outward normal, `ior_outside` before it.
+    /// An interface: the index `ior` behind the outward normal. `ior_outside` before it can be left out (`None`): then the
+    /// medium is the one that is there.
     ///
     /// # Errors
     /// Indices outside `IOR`.
-    pub fn new(ior: f64, ior_outside: f64) -> Result<Self, Invalid> {
-        Ok(Self { ior: IOR.check("ior", ior)?, ior_outside: IOR.check("ior_outside", ior_outside)? })
+    pub fn new(ior: f64, ior_outside: impl Into<Option<f64>>) -> Result<Self, Invalid> {
+        let ior_outside = ior_outside.into().map(|n| IOR.check("ior_outside", n)).transpose()?;
+        Ok(Self { ior: IOR.check("ior", ior)?, ior_outside })
     }
 
     /// Refractive index behind the outward normal.
@@ -35,8 +38,8 @@ impl Dielectric {
         self.ior
     }
 
-    /// Refractive index before the outward normal.
-    pub fn ior_outside(&self) -> f64 {
+    /// Refractive index before the outward normal, where it is stated.
+    pub fn ior_outside(&self) -> Option<f64> {
         self.ior_outside
     }
 }
@@ -63,9 +66,10 @@ impl Dielectric {
     /// through: the direction, unit, and whether a smooth normal made an exception necessary
     /// ([`Event::Leaves`]).
     #[inline]
-    fn split(&self, at: &Incidence) -> (f64, impl Fn(bool) -> (DVec3, bool)) {
+    fn split(at: &Incidence) -> (f64, impl Fn(bool) -> (DVec3, bool)) {
         let Incidence { direction, facet, .. } = *at;
-        let eta = if at.front { self.ior / self.ior_outside } else { self.ior_outside / self.ior };
+        let [before, behind_face] = at.indices;
+        let eta = behind_face / before;
         let (normal, behind) = at.working_normal();
         // Edge-on, rounding may put the direction on the other side of the facet it arrived at.
         let cos_i = (-direction.dot(normal)).clamp(0.0, 1.0);
@@ -83,13 +87,14 @@ impl Dielectric {
     }
 
     /// (n_i / n_t)^2: luminance over the square of the index is what refraction leaves unchanged, so an eye
-    /// path that goes on through the interface from the medium of index n_i, on the side `front`, sees that
+    /// path that goes on through the interface from the medium of index n_i sees that
     /// part of the luminance in n_t. (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation",
     /// 1997, section 5.2.)
     #[inline]
-    fn luminance_factor(&self, front: bool) -> f64 {
-        let ratio = self.ior_outside / self.ior;
-        if front { ratio * ratio } else { 1.0 / (ratio * ratio) }
+    fn luminance_factor(at: &Incidence) -> f64 {
+        let [n_i, n_t] = at.indices;
+        // The same bits as for the ratio of outside to inside, whichever way the path goes.
+        if at.front { (n_i / n_t) * (n_i / n_t) } else { 1.0 / ((n_t / n_i) * (n_t / n_i)) }
     }
 }
 
@@ -104,28 +109,28 @@ impl Model for Dielectric {
         false
     }
 
-    fn is_transparent(&self) -> bool {
-        true
+    fn indices(&self) -> Option<(f64, Option<f64>)> {
+        Some((self.ior, self.ior_outside))
     }
 
     /// Reflects with the Fresnel reflectance, else refracts.
     #[inline]
     fn scatter<C: Chooser, T: Throughput>(&self, at: &Incidence, chooser: &mut C, _: &mut T) -> Event {
-        let (reflectance, way) = self.split(at);
+        let (reflectance, way) = Self::split(at);
         let through = !chooser.happens(reflectance);
         let (direction, corrected) = way(through);
         Event::Leaves { direction, through, corrected }
     }
 
     fn specular(&self, at: &Incidence) -> Ways {
-        let (r, way) = self.split(at);
+        let (r, way) = Self::split(at);
         let way = |through, part, luminance_factor| {
             let direction = way(through).0;
             Way { direction, part: [part; 3], luminance_factor }
         };
         Ways {
             mirrored: (r > 0.0).then(|| way(false, r, 1.0)),
-            through: (r < 1.0).then(|| way(true, 1.0 - r, self.luminance_factor(at.front))),
+            through: (r < 1.0).then(|| way(true, 1.0 - r, Self::luminance_factor(at))),
             lossless: true,
         }
     }
@@ -137,9 +142,11 @@ mod tests {
     use crate::surface::Grey;
     use crate::surface::tests::Script;
 
-    fn at(angle: f64, front: bool) -> Incidence {
+    /// Out of a medium of the first index into one of the second, or back.
+    fn at(angle: f64, front: bool, indices: [f64; 2]) -> Incidence {
         let direction = DVec3::new(angle.sin(), 0.0, -angle.cos());
-        Incidence { direction, facet: DVec3::Z, smooth: DVec3::Z, front }
+        let indices = if front { indices } else { [indices[1], indices[0]] };
+        Incidence { direction, facet: DVec3::Z, smooth: DVec3::Z, front, indices }
     }
 
     #[test]
@@ -162,7 +169,7 @@ mod tests {
         let glass = Dielectric::new(1.5, 1.0).unwrap();
         for (angle, total) in [(critical - 1e-9, false), (critical + 1e-9, true)] {
             let mut script = Script::new([false], []);
-            match glass.scatter(&at(angle, false), &mut script, &mut Grey) {
+            match glass.scatter(&at(angle, false, [1.0, 1.5]), &mut script, &mut Grey) {
                 Event::Leaves { direction, through, .. } => {
                     assert_eq!(through, !total);
                     assert_eq!(script.asked.is_empty(), total, "total reflection draws nothing");
@@ -181,7 +188,7 @@ mod tests {
         let glass = Dielectric::new(1.5, 1.2).unwrap();
         for (front, ratio) in [(true, 1.2 / 1.5), (false, 1.5 / 1.2)] {
             let mut script = Script::new([false], []);
-            match glass.scatter(&at(0.5, front), &mut script, &mut Grey) {
+            match glass.scatter(&at(0.5, front, [1.2, 1.5]), &mut script, &mut Grey) {
                 Event::Leaves { direction, through: true, corrected: false } => {
                     assert!((direction.x - ratio * 0.5f64.sin()).abs() < 1e-15 && direction.z < 0.0);
                 }
@@ -196,7 +203,7 @@ mod tests {
         let mut corrected = 0;
         for i in 0..1000 {
             let tilt = 0.4 * f64::from(i % 7 - 3) / 3.0;
-            let mut incidence = at(1.57 * f64::from(i) / 1000.0, i % 2 == 0);
+            let mut incidence = at(1.57 * f64::from(i) / 1000.0, i % 2 == 0, [1.0, 1.5]);
             incidence.smooth = DVec3::new(tilt.sin(), 0.0, tilt.cos());
             for reflect in [true, false] {
                 let mut script = Script::new([reflect], []);
@@ -217,7 +224,7 @@ mod tests {
     fn an_eye_path_goes_the_ways_of_photons_with_the_parts_that_they_go() {
         let glass = Dielectric::new(1.5, 1.2).unwrap();
         for (front, factor) in [(true, 0.64), (false, 1.0 / 0.64)] {
-            let mut incidence = at(0.5, front);
+            let mut incidence = at(0.5, front, [1.2, 1.5]);
             incidence.smooth = DVec3::new(0.1, 0.0, 1.0).normalize();
             let ways = glass.specular(&incidence);
             assert!(ways.lossless);
@@ -233,9 +240,9 @@ mod tests {
                 assert!((way.luminance_factor / factor - 1.0).abs() < 1e-15);
             }
         }
-        let total = glass.specular(&at(1.2, false));
+        let total = glass.specular(&at(1.2, false, [1.2, 1.5]));
         assert!(total.through.is_none() && total.mirrored.unwrap().part == [1.0; 3]);
-        let matched = Dielectric::new(1.5, 1.5).unwrap().specular(&at(1.2, false));
+        let matched = Dielectric::new(1.5, 1.5).unwrap().specular(&at(1.2, false, [1.5, 1.5]));
         assert!(matched.mirrored.is_none() && matched.through.unwrap().part == [1.0; 3]);
     }
 

@@ -15,14 +15,17 @@ pub struct Incidence {
     pub smooth: DVec3,
     /// Whether the side of arrival is the one the outward normal points to.
     pub front: bool,
+    /// Refractive indices of the media on the side of arrival and on the other; 1 where no light passes between media.
+    pub indices: [f64; 2],
 }
 
 impl Incidence {
-    /// What travels along `direction` and meets a surface there.
+    /// What travels along `direction` and meets a surface there, between media of these refractive indices.
     #[inline]
-    pub fn of(hit: &Hit, direction: DVec3) -> Self {
+    pub fn of(hit: &Hit, direction: DVec3, indices: [f64; 2]) -> Self {
         let sign = if hit.front { 1.0 } else { -1.0 };
-        Self { direction, facet: hit.normal * sign, smooth: hit.shading_normal * sign, front: hit.front }
+        let (facet, smooth) = (hit.normal * sign, hit.shading_normal * sign);
+        Self { direction, facet, smooth, front: hit.front, indices }
     }
 
     /// The facet's outward normal.
@@ -83,6 +86,7 @@ mod tests {
             facet: DVec3::Z,
             smooth: DVec3::new(0.8, 0.0, 0.6),
             front: true,
+            indices: [1.0; 2],
         };
         assert_eq!(at.working_normal(), (DVec3::Z, true));
     }
@@ -99,11 +103,12 @@ mod tests {
             normal: DVec3::Z,
             shading_normal: DVec3::new(0.6, 0.0, 0.8),
             front,
-            closed: false,
+            body: crate::geometry::Body::Open,
+            touch: None,
         };
-        let front = Incidence::of(&hit(true), -DVec3::Z);
+        let front = Incidence::of(&hit(true), -DVec3::Z, [1.0; 2]);
         assert_eq!((front.facet, front.smooth), (DVec3::Z, DVec3::new(0.6, 0.0, 0.8)));
-        let back = Incidence::of(&hit(false), DVec3::Z);
+        let back = Incidence::of(&hit(false), DVec3::Z, [1.0; 2]);
         assert_eq!((back.facet, back.smooth), (-DVec3::Z, DVec3::new(-0.6, -0.0, -0.8)));
         assert!(front.front && !back.front);
         assert_eq!((front.outward(), back.outward()), (DVec3::Z, DVec3::Z));

@@ -161,9 +161,9 @@ pub trait Model {
     fn specular(&self, _at: &Incidence) -> Ways {
         Ways::default()
     }
-    /// [`Material::is_transparent`].
-    fn is_transparent(&self) -> bool {
-        false
+    /// [`Material::indices`].
+    fn indices(&self) -> Option<(f64, Option<f64>)> {
+        None
     }
     /// [`Material::proposals`].
     fn proposals(&self, _at: &Incidence) -> [f64; 2] {
@@ -197,10 +197,15 @@ impl Material {
         ask!(self, is_coloured())
     }
 
-    /// Whether light passes into another medium. (A sheet that scatters light through it has the same on both
-    /// sides.)
+    /// Of a material through which light passes into another medium: the refractive index behind the outward normal, and
+    /// the one before it where that is stated. (A sheet that scatters light through it has the same medium on both sides.)
+    pub fn indices(&self) -> Option<(f64, Option<f64>)> {
+        ask!(self, indices())
+    }
+
+    /// Whether light passes into another medium.
     pub fn is_transparent(&self) -> bool {
-        ask!(self, is_transparent())
+        self.indices().is_some()
     }
 
     /// What happens to a photon that arrived, and to what it carries.

@@ -24,6 +24,8 @@ pub(super) struct Routes<'s> {
 pub struct Receivers<'s> {
     routes: Routes<'s>,
     counts: Vec<Counts>,
+    /// Arrivals on the side of each receiver on which it does not count.
+    turned_away: Counts,
 }
 
 impl<'s> Routes<'s> {
@@ -37,7 +39,12 @@ impl<'s> Routes<'s> {
 
     /// Calls `add(receiver, cell)` for every receiver that the arrival counts for.
     #[inline(always)]
-    pub(super) fn each_cell<T>(&self, arrival: &Arrival<'_, T>, mut add: impl FnMut(usize, usize)) {
+    pub(super) fn each_cell<T>(
+        &self,
+        arrival: &Arrival<'_, T>,
+        mut add: impl FnMut(usize, usize),
+        mut turn_away: impl FnMut(usize),
+    ) {
         for &i in &self.on_surface[arrival.hit.surface.0 as usize] {
             let receiver = &self.receivers[i as usize];
             let side = match receiver.side {
@@ -50,6 +57,9 @@ impl<'s> Routes<'s> {
                 ReceiverEvents::Direct => arrival.events == 0,
                 ReceiverEvents::Indirect => arrival.events > 0,
             };
+            if !side {
+                turn_away(i as usize);
+            }
             if side
                 && history
                 && let Some(cell) = self.cell(receiver, arrival.hit)
@@ -77,7 +87,7 @@ impl<'s> Receivers<'s> {
     /// Counters at zero for these receivers.
     pub fn new(geometry: &'s Geometry, receivers: &'s [Receiver]) -> Self {
         let counts = receivers.iter().map(|r| Counts::new(r.cells.len())).collect();
-        Self { routes: Routes::new(geometry, receivers), counts }
+        Self { routes: Routes::new(geometry, receivers), counts, turned_away: Counts::new(receivers.len()) }
     }
 
     /// A handle for one batch of photons; all handles add to the same counters.
@@ -95,8 +105,14 @@ impl<'s> Receivers<'s> {
         &self.counts[receiver]
     }
 
+    /// Arrivals on the side of each receiver on which it does not count.
+    pub fn turned_away(&self) -> &Counts {
+        &self.turned_away
+    }
+
     /// Sets everything to zero, for the next replicate.
     pub fn clear(&mut self) {
+        self.turned_away.clear();
         self.counts.iter_mut().for_each(Counts::clear);
     }
 }
@@ -112,7 +128,11 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
-        all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add(cell));
+        all.routes.each_cell(
+            arrival,
+            |receiver, cell| all.counts[receiver].add(cell),
+            |receiver| all.turned_away.add(receiver),
+        );
     }
 }
 
@@ -129,7 +149,8 @@ impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
-        all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add_amount(cell, self.amount));
+        let add = |receiver: usize, cell| all.counts[receiver].add_amount(cell, self.amount);
+        all.routes.each_cell(arrival, add, |_| {});
     }
 
     #[inline]

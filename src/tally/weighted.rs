@@ -101,11 +101,12 @@ impl Sink<Fixed> for ChannelSink<'_, '_> {
         let all = self.receivers;
         // Rounded to the nearest quantum; at most `scale`, because weights are at most 1.
         let quanta = arrival.carried.weight().map(|w| (w * self.scale + 0.5) as u64);
-        all.routes.each_cell(arrival, |receiver, cell| {
+        let add = |receiver: usize, cell: usize| {
             for (sum, quanta) in all.sums[all.first[receiver] + cell].iter().zip(quanta) {
                 sum.fetch_add(quanta, Ordering::Relaxed);
             }
-        });
+        };
+        all.routes.each_cell(arrival, add, |_| {});
     }
 }
 

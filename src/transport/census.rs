@@ -1,12 +1,15 @@
 //! What a batch of photons did beside hitting receivers: coordinates used, exceptions made.
 
+use std::collections::BTreeMap;
+
+use crate::geometry::SurfaceId;
 use crate::sample::coordinates::Purpose;
 
 /// Longest constructive dimension with a bar of its own in the histogram; longer ones share the last.
 pub const LONGEST_DIMENSION: usize = 64;
 
 /// Things that geometry and smooth normals make necessary now and then, counted so that they are never hidden.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Exceptions {
     /// Candidate hits that were the crossing just made, seen again through rounding.
     pub skipped_crossings: u64,
@@ -14,6 +17,17 @@ pub struct Exceptions {
     pub corrected_directions: u64,
     /// Photons that a scattering table sent below the horizon, absorbed there (METHOD 4).
     pub below_horizon: u64,
+    /// Arrivals at transparent surfaces in another medium than the scene says is there.
+    #[serde(skip)]
+    pub contradicted: BTreeMap<SurfaceId, u64>,
+    /// Photons that met no further surface while they were inside these bodies.
+    #[serde(skip)]
+    pub lost: BTreeMap<SurfaceId, u64>,
+}
+
+/// Adds counts by what they are of.
+fn add<K: Copy + Ord>(to: &mut BTreeMap<K, u64>, more: &BTreeMap<K, u64>) {
+    more.iter().for_each(|(of, count)| *to.entry(*of).or_default() += count);
 }
 
 /// Counts over photons; all integers, so merging is exact in any order.
@@ -27,6 +41,8 @@ pub struct Census {
     pub drawn_for: [u64; Purpose::ALL.len()],
     /// Exceptions.
     pub exceptions: Exceptions,
+    /// Photons that met nothing at all, by emitter.
+    pub missed: BTreeMap<usize, u64>,
 }
 
 impl Default for Census {
@@ -36,6 +52,7 @@ impl Default for Census {
             dimension_max: 0,
             drawn_for: [0; Purpose::ALL.len()],
             exceptions: Exceptions::default(),
+            missed: BTreeMap::new(),
         }
     }
 }
@@ -82,6 +99,9 @@ impl Census {
         self.exceptions.skipped_crossings += other.exceptions.skipped_crossings;
         self.exceptions.corrected_directions += other.exceptions.corrected_directions;
         self.exceptions.below_horizon += other.exceptions.below_horizon;
+        add(&mut self.exceptions.contradicted, &other.exceptions.contradicted);
+        add(&mut self.exceptions.lost, &other.exceptions.lost);
+        add(&mut self.missed, &other.missed);
     }
 }
 

@@ -35,7 +35,7 @@ impl Ledger {
     pub fn end(&mut self, end: End) {
         match end {
             End::Absorbed(surface) => self.absorbed[surface.0 as usize] += 1,
-            End::Escaped => self.escaped += 1,
+            End::Escaped | End::Missed => self.escaped += 1,
             End::Killed => self.killed += 1,
         }
     }

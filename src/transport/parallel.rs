@@ -17,7 +17,7 @@ use crate::surface::Throughput;
 
 use super::census::Census;
 use super::ledger::Ledger;
-use super::walk::{Sink, walk};
+use super::walk::{End, Sink, walk};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.
@@ -159,6 +159,9 @@ fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
         let carried = carried.tinted(scene.emitter_colour(emitter));
         let end = walk(scene, emission, start, carried, &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
+        if end == End::Missed {
+            *traced.census.missed.entry(emitter).or_default() += 1;
+        }
         traced.census.count(coordinates.drawn(), coordinates.drawn_for());
     }
 }

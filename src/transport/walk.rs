@@ -6,6 +6,7 @@ use crate::emitter::Emission;
 use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
 use crate::sample::coordinates::Chooser;
 use crate::scene::Scene;
+use crate::scene::media::Interface;
 use crate::surface::{Event, Grey, Incidence, Throughput};
 
 use super::census::Exceptions;
@@ -46,6 +47,8 @@ pub enum End {
     Absorbed(SurfaceId),
     /// It met no further surface.
     Escaped,
+    /// It met none at all.
+    Missed,
     /// The guard ended it ([`MAX_EVENTS`]).
     Killed,
 }
@@ -62,14 +65,31 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     exceptions: &mut Exceptions,
 ) -> End {
     let Emission { mut origin, mut direction, .. } = emission;
-    for events in 0..MAX_EVENTS {
+    let mut events = 0;
+    while events < MAX_EVENTS {
         let Some(hit) =
             scene.geometry.nearest(origin, direction, &whereabouts, &mut exceptions.skipped_crossings)
         else {
-            return End::Escaped;
+            for body in scene.media.bodies_of(&whereabouts) {
+                *exceptions.lost.entry(body).or_default() += 1;
+            }
+            return if events == 0 { End::Missed } else { End::Escaped };
         };
         sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
-        let at = Incidence::of(&hit, direction);
+        for joint in scene.geometry.joint_hits(&hit) {
+            let hit = &joint;
+            sink.arrive(&Arrival { hit, direction, events, carried: &carried, whereabouts: &whereabouts });
+        }
+        if scene.media.is_contradicted(&hit, &whereabouts) {
+            *exceptions.contradicted.entry(hit.surface).or_default() += 1;
+        }
+        let Interface::Between(indices) = scene.media.interface(&hit, &whereabouts) else {
+            // The same medium on both sides.
+            scene.media.leave(&mut whereabouts, &hit, hit.other_side());
+            origin = hit.position;
+            continue;
+        };
+        let at = Incidence::of(&hit, direction, indices);
         match scene.material(hit.surface).scatter(&at, chooser, &mut carried) {
             Event::Absorbed => return End::Absorbed(hit.surface),
             Event::BelowHorizon => {
@@ -79,10 +99,11 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
             Event::Leaves { direction: onward, through, corrected } => {
                 exceptions.corrected_directions += u64::from(corrected);
                 let side = if hit.front == through { Side::Back } else { Side::Front };
-                whereabouts.leave(&hit, side);
+                scene.media.leave(&mut whereabouts, &hit, side);
                 (origin, direction) = (hit.position, onward);
             }
         }
+        events += 1;
     }
     End::Killed
 }

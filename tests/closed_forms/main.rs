@@ -13,6 +13,7 @@ mod discontinuous;
 mod emitter_colour;
 mod interrupted;
 mod lengths;
+mod media;
 mod nephroid;
 mod panel;
 mod photometric_frame;

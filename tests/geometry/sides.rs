@@ -62,7 +62,7 @@ fn grazing_rays_enter_and_leave_a_sphere_or_miss_it() {
         }
         assert!(crossings == 0 || crossings == 2, "{k}: {crossings}");
         entered += crossings / 2;
-        assert!(at.behind().is_empty());
+        assert!(!at.is_behind_any());
     }
     assert!((900..=1100).contains(&entered), "{entered}");
 }
@@ -143,7 +143,7 @@ fn more_nested_bodies_than_the_list_holds_are_still_crossed_in_order() {
     let expected: Vec<_> = inward.chain((0..shells as u32).map(|i| (i, false))).collect();
     assert_eq!(order, expected);
     assert_eq!(skipped, 0);
-    assert!(at.behind().is_empty());
+    assert!(!at.is_behind_any());
 }
 
 #[test]

@@ -55,7 +55,7 @@ fn the_value_is_what_photons_do() {
         let (outward, wi) = (outward.normalize(), wi.normalize());
         let front = wi.dot(outward) > 0.0;
         let facet = if front { outward } else { -outward };
-        let at = Incidence { direction: -wi, facet, smooth: facet, front };
+        let at = Incidence { direction: -wi, facet, smooth: facet, front, indices: [1.0; 2] };
         let n = 1u64 << 16;
         let points = OwenPoints::new(5, 0);
         // Reflected and transmitted apart: [f 1, f probe].

@@ -120,7 +120,7 @@ fn built_in_scene_is_the_paper_s_experiment() {
     {
         let index = scene.geometry.surfaces().iter().position(|s| s.name == name).unwrap();
         let Material::Dielectric(glass) = &scene.materials()[index] else { panic!("glass") };
-        assert_eq!((glass.ior(), glass.ior_outside()), (1.5, 1.0));
+        assert_eq!((glass.ior(), glass.ior_outside()), (1.5, None));
         let octaves = [(1.0, 0.300), (0.45, 0.148), (0.12, 0.073)]
             .map(|(amplitude, wavelength)| Octave { amplitude, wavelength_m: wavelength * stretch });
         let noise = Formula::Noise(Noise::new(seed, octaves.to_vec(), 0.010).unwrap());

@@ -54,7 +54,7 @@ impl Sink for Watch<'_> {
             Material::Dielectric(glass) => {
                 // Snell: n1 sin(i) >= n2 leaves no way through. The cross product gives the sine.
                 let sine = arrival.direction.cross(arrival.hit.normal).length();
-                let (outside, inside) = (glass.ior_outside(), glass.ior());
+                let (outside, inside) = (glass.ior_outside().unwrap_or(1.0), glass.ior());
                 let (n1, n2) = if arrival.hit.front { (outside, inside) } else { (inside, outside) };
                 if n1 * sine >= n2 { &mut seen.total_reflections } else { &mut seen.fresnel }
             }
@@ -156,7 +156,7 @@ fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, t
     assert_eq!(labelled[Purpose::Scatter as usize], 2 * diffuse);
 
     let c = match end {
-        End::Escaped => 1,
+        End::Escaped | End::Missed => 1,
         End::Absorbed(_) => 2,
         End::Killed => panic!("photon {index} was killed"),
     };

@@ -81,7 +81,7 @@ fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
         let points = IndependentPoints::new(5, 0);
         let (n, mut specular) = (20_000u64, 0.0);
         for i in 0..n {
-            let at = Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: true };
+            let at = Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: true, indices: [1.0; 2] };
             match t.scatter(&at, &mut Coordinates::new(&points, i, true), &mut Grey) {
                 Event::Leaves { direction, through, .. } => {
                     assert_eq!(through, quantity == Quantity::Transmission);
@@ -120,7 +120,7 @@ fn an_anisotropic_table_turns_with_its_reference_and_rotation() {
     let lit = |options: &Options, normal: DVec3, front: bool, from: DVec3| {
         let t = tabulated(&table, options);
         let wi = (normal * 0.5 + from * 0.75f64.sqrt()).normalize();
-        let at = Incidence { direction: -wi, facet: normal, smooth: normal, front };
+        let at = Incidence { direction: -wi, facet: normal, smooth: normal, front, indices: [1.0; 2] };
         let points = IndependentPoints::new(1, 0);
         (0..200).any(|i| {
             let mut c = Coordinates::new(&points, i, true);

@@ -12,7 +12,7 @@ fn leg(from_front: bool, wi: DVec3) -> (DVec3, Leg) {
 
 /// A photon from wi.
 pub fn arriving(from_front: bool, wi: DVec3) -> Incidence {
-    Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: from_front }
+    Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: from_front, indices: [1.0; 2] }
 }
 
 /// Parts of the light from wi that are scattered, by channel.

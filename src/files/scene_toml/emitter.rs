@@ -37,6 +37,7 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
     let position = table.needed_vector("position", &COORDINATE, "[x, y, z] in metres");
     let flux_lm = table.number("flux_lm", &FLUX);
     let colour = read_colour(&mut table);
+    let medium_name = table.text("medium");
     let make = if kind == "photometric" {
         read_photometric(&mut table, position, flux_lm)
     } else {
@@ -53,7 +54,7 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
         emitter.map(|emitter| -> Make<Emitter> { Box::new(move |_| Ok(emitter)) })
     };
     table.finish();
-    Some(EmitterPart { name, colour: colour?, make: make?, place })
+    Some(EmitterPart { name, colour: colour?, make: make?, medium_name, medium: None, place })
 }
 
 fn read_photometric(

@@ -32,9 +32,12 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
     let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
     let kind = table.require("type", kind, required)?;
-    let mut reference = None;
+    let (mut reference, mut ior) = (None, None);
     let make = match kind {
-        "dielectric" => read_dielectric(&mut table).map(made),
+        "dielectric" => read_dielectric(&mut table).map(|dielectric| {
+            ior = Some(dielectric.ior());
+            made(Material::Dielectric(dielectric))
+        }),
         "mirror" => read_mirror(&mut table).map(made),
         "lambertian" => read_lambertian(&mut table).map(made),
         "absorber" => {
@@ -44,7 +47,7 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
         _ => read_tabulated(&mut table, &mut reference),
     };
     table.finish();
-    Some(MaterialPart { make: make?, reference, place })
+    Some(MaterialPart { make: make?, reference, ior, place })
 }
 
 /// A material that needs no file.
@@ -73,17 +76,17 @@ fn read_lambertian(table: &mut Table<'_, '_>) -> Option<Material> {
     Some(Material::Lambertian(Lambertian::new(reflectance)))
 }
 
-fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Material> {
+fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Dielectric> {
     table.call("a dielectric");
     let ior = table.number("ior", &IOR);
-    let ior_outside = table.number("ior_outside", &IOR).unwrap_or(1.0);
+    let ior_outside = table.number("ior_outside", &IOR);
     let ior = table.require("ior", ior, IOR.words)?;
-    if ior == ior_outside {
+    if Some(ior) == ior_outside {
         let place = table.place_of("ior").unwrap_or(table.place());
         let found = format!("ior = {ior}, the same as ior_outside");
         table.document().warn_at(place, Kind::Range, found, "two media that differ: light passes unchanged");
     }
-    table.accept(Dielectric::new(ior, ior_outside)).map(Material::Dielectric)
+    table.accept(Dielectric::new(ior, ior_outside))
 }
 
 /// What makes the table; `reference` is the direction that azimuths are counted from, where one is given.

@@ -138,7 +138,10 @@ impl SceneFile {
         };
         for part in parts.emitters.into_iter().flatten() {
             match (part.make)(&mut loader) {
-                Ok(emitter) => _ = scene.at(part.place).coloured_emitter(part.name, emitter, part.colour),
+                Ok(emitter) => {
+                    scene.at(part.place).coloured_emitter(part.name, emitter, part.colour);
+                    part.medium.map(|medium| _ = scene.emitter_in(medium));
+                }
                 Err(e) => errors.push(placed(part.place, e, &loader.name)),
             }
         }
@@ -152,7 +155,7 @@ impl SceneFile {
                 // A material in error is reported already.
                 let Some((material, reference)) = &materials[part.material] else { return Ok(()) };
                 let material = material::laid_on(material, *reference, &shape)?;
-                scene.at(part.place).surface(part.name, shape, material);
+                scene.at(part.place).surface_with(part.name, shape, material, part.options);
                 Ok(())
             });
             errors.extend(made.err().map(|e| placed(part.place, e, &loader.name)));
@@ -163,8 +166,12 @@ impl SceneFile {
         for (receiver, place) in parts.receivers.into_iter().flatten() {
             scene.at(place).receiver(receiver);
         }
-        if let Some((camera, place)) = parts.camera {
+        if let Some((camera, medium, place)) = parts.camera {
             scene.at(place).camera(camera);
+            medium.map(|medium| _ = scene.camera_in(medium));
+        }
+        if let Some(medium) = parts.ambient {
+            scene.ambient(medium);
         }
         if let Some(reflections) = parts.compared_reflections {
             scene.compared_reflections(reflections);
@@ -179,7 +186,7 @@ impl SceneFile {
         let contents: BTreeSet<&str> = files.iter().map(|(_, hash)| hash.as_str()).collect();
         let light = sha256_hex(format!("{}{contents:?}", canonical::canonical(&text, &hash_of)).as_bytes());
         scene.identity = Identity { name, sha256: sha256_hex(text.as_bytes()), text, files, light };
-        scene.warnings = warnings;
+        scene.warnings = warnings.into_iter().chain(scene.warnings.into_iter().map(|w| w.in_file(&scene.identity.name))).collect();
         Ok(scene)
     }
 }

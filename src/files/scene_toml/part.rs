@@ -3,15 +3,21 @@
 use glam::DVec3;
 
 use super::loader::Make;
+use super::table::Placed;
 use crate::emitter::{Colour, Emitter};
 use crate::error::Place;
 use crate::geometry::Shape;
+use crate::scene::SurfaceOptions;
+use crate::scene::media::Medium;
 use crate::surface::Material;
 
 pub(super) struct EmitterPart {
     pub name: String,
     pub colour: Colour,
     pub make: Make<Emitter>,
+    /// The medium it stands in, where the scene names one; looked up when the materials are known.
+    pub medium_name: Option<Placed<String>>,
+    pub medium: Option<Medium>,
     pub place: Place,
 }
 
@@ -19,6 +25,8 @@ pub(super) struct MaterialPart {
     pub make: Make<Material>,
     /// The direction from which a table's azimuths are counted, where the scene gives one.
     pub reference: Option<DVec3>,
+    /// Refractive index of a material that can name a medium.
+    pub ior: Option<f64>,
     pub place: Place,
 }
 
@@ -29,5 +37,6 @@ pub(super) struct SurfacePart {
     pub shape: Make<Shape>,
     /// The word for a shape on which a receiver has a value a face.
     pub of_faces: Option<&'static str>,
+    pub options: SurfaceOptions,
     pub place: Place,
 }

@@ -1,12 +1,15 @@
 //! The tables of a scene file, and its parts as they stand in it.
 
+use std::cell::RefCell;
+
 use super::document::Document;
 use super::names::Names;
 use super::part::{EmitterPart, MaterialPart, SurfacePart};
-use super::table::{Placed, Table};
+use super::table::{Placed, Table, shown};
 use super::{camera, emitter, material, receiver, surface};
 use crate::error::{Kind, Place};
 use crate::scene::camera::Camera;
+use crate::scene::media::Medium;
 use crate::scene::receiver::ReceiverSpec;
 
 /// Most emitters, materials, surfaces or receivers of one scene, each.
@@ -35,7 +38,8 @@ pub(super) struct Parts {
     pub materials: Vec<Option<MaterialPart>>,
     pub surfaces: Vec<Option<SurfacePart>>,
     pub receivers: Vec<Option<(ReceiverSpec, Place)>>,
-    pub camera: Option<(Camera, Place)>,
+    pub camera: Option<(Camera, Option<Medium>, Place)>,
+    pub ambient: Option<Medium>,
     pub compared_reflections: Option<u32>,
     pub run: RunDefaults,
     /// Every mention of a file.
@@ -57,7 +61,7 @@ impl Parts {
             );
         }
         let mut names = Names::new("emitter");
-        let emitters = emitter_tables
+        let mut emitters: Vec<_> = emitter_tables
             .into_iter()
             .enumerate()
             .map(|(index, table)| emitter::read(table, index, &mut names))
@@ -73,6 +77,21 @@ impl Parts {
             material_names.insert(document, &name, table.place(), index);
             materials.push(material::read(table));
         }
+
+        let named = RefCell::new(Vec::new());
+        let medium = |name: &Placed<String>| {
+            named.borrow_mut().push(name.value.clone());
+            medium_named(document, name, &material_names, &materials)
+        };
+        for part in emitters.iter_mut().flatten() {
+            part.medium = part.medium_name.as_ref().and_then(medium);
+        }
+        let ambient = root.table("ambient", "[ambient]").and_then(|mut table| {
+            let name = table.text("medium");
+            let name = table.require("medium", name, "the name of a dielectric material, or \"air\"");
+            table.finish();
+            medium(&name?)
+        });
 
         let mut surface_names = Names::new("surface");
         let mut cells = 0;
@@ -97,17 +116,17 @@ impl Parts {
             let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
         }
-        warn_unused(document, &material_names, &surfaces);
-
-        let camera = root.table("camera", "[camera]").and_then(|table| {
+        let camera = root.table("camera", "[camera]").and_then(|mut table| {
             let place = table.place();
-            Some((camera::read(table)?, place))
+            let medium = table.text("medium").as_ref().and_then(medium);
+            Some((camera::read(table)?, medium, place))
         });
+        warn_unused(document, &material_names, &surfaces, &named.into_inner());
         let compared_reflections = root.table("compare", "[compare]").and_then(read_compare);
         let run = root.table("run", "[run]").map(read_run).unwrap_or_default();
         root.finish();
         let files = document.files();
-        Self { emitters, materials, surfaces, receivers, camera, compared_reflections, run, files }
+        Self { emitters, materials, surfaces, receivers, camera, ambient, compared_reflections, run, files }
     }
 }
 
@@ -118,10 +137,35 @@ fn parts_named<'t, 'd>(root: &mut Table<'t, 'd>, key: &'static str) -> Vec<Table
     root.tables(key, &what, MOST_PARTS, &required).unwrap_or_default()
 }
 
-fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<SurfacePart>]) {
+/// The medium that a dielectric material is, or air.
+fn medium_named(
+    document: &Document<'_>,
+    name: &Placed<String>,
+    names: &Names,
+    materials: &[Option<MaterialPart>],
+) -> Option<Medium> {
+    let known = names.in_order().into_iter().find(|(known, _, _)| *known == name.value);
+    let Some((_, _, index)) = known else {
+        if name.value == "air" {
+            return Some(Medium::air());
+        }
+        let found = format!("the medium `{}`", shown(&name.value));
+        document.error_at(name.place, Kind::Unknown, found, "the name of a dielectric material, or \"air\"");
+        return None;
+    };
+    // A material in error is reported already.
+    let material = materials[index].as_ref()?;
+    if material.ior.is_none() {
+        let found = format!("the material `{}`, which is no medium", shown(&name.value));
+        document.error_at(name.place, Kind::Range, found, "a material with type = \"dielectric\"");
+    }
+    Some(Medium { name: name.value.clone(), ior: material.ior? })
+}
+
+fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<SurfacePart>], media: &[String]) {
     let used: Vec<usize> = surfaces.iter().flatten().map(|s| s.material).collect();
     for (name, place, index) in names.in_order() {
-        if !used.contains(&index) {
+        if !used.contains(&index) && !media.iter().any(|medium| medium == name) {
             let found = format!("the material `{name}`, which no surface has");
             document.warn_at(place, Kind::Unknown, found, format!("a surface with material = \"{name}\""));
         }

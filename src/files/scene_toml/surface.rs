@@ -8,13 +8,20 @@ use super::names::Names;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::SurfacePart;
 use super::table::Table;
-use crate::error::Invalid;
+use crate::error::invalid::Interval;
+use crate::error::{Invalid, Kind};
 use crate::files::obj::{ObjOptions, parse_obj};
 use crate::geometry::{
     ANGLE, COORDINATE, LENGTH, Paraboloid, Rectangle, SCALE, Shape, Smoothing, Sphere, Transform, box_mesh,
 };
+use crate::scene::{Joint, SurfaceOptions};
 
 const TYPES: [&str; 6] = ["mesh", "rectangle", "box", "sphere", "paraboloid", "heightfield"];
+
+const JOINTS: [(&str, Joint); 2] = [("film", Joint::Film), ("glued", Joint::Glued)];
+
+const PRIORITY: Interval =
+    Interval { low: -1000.0, high: 1000.0, words: "a whole number from -1000 to 1000" };
 
 const POINT: &str = "[x, y, z] in metres";
 
@@ -33,6 +40,7 @@ pub(super) fn read(
     }
     let material = materials.refer(&mut table, "material");
     let transform = read_transform(&mut table);
+    let options = read_options(&mut table);
     let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let words = "\"mesh\", \"rectangle\", \"box\", \"sphere\", \"paraboloid\" or \"heightfield\"";
     let kind = table.require("type", kind, words)?;
@@ -57,7 +65,17 @@ pub(super) fn read(
     };
     table.finish();
     let of_faces = ["mesh", "box", "heightfield"].contains(&kind).then_some(kind);
-    Some(SurfacePart { name: name?.value, material: material?.index, shape: shape?, of_faces, place })
+    Some(SurfacePart { name: name?.value, material: material?.index, shape: shape?, of_faces, options, place })
+}
+
+/// `contact` and `priority`.
+fn read_options(table: &mut Table<'_, '_>) -> SurfaceOptions {
+    let contact = table.word("contact", &JOINTS);
+    let priority = table.number("priority", &PRIORITY).unwrap_or(0.0);
+    if priority.fract() != 0.0 {
+        table.error("priority", Kind::Range, PRIORITY.words);
+    }
+    SurfaceOptions { priority: priority as i32, contact }
 }
 
 /// A shape that is not moved keeps its bits: no normal is normalised again.

@@ -151,7 +151,7 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
                     events.scattered -= 1.0;
                 }
             }
-            End::Escaped | End::Killed => events.end = 1.0,
+            End::Escaped | End::Missed | End::Killed => events.end = 1.0,
         }
         for mut part in [events, chooser.seen] {
             sum.fields().into_iter().zip(part.fields()).for_each(|(sum, part)| *sum += *part);
@@ -174,7 +174,7 @@ impl<T> Sink<T> for Arrivals<'_> {
             Kind::Specular => self.events.specular += 1.0,
             Kind::Scattering => {
                 self.events.scattered += 1.0;
-                let proposals = material.proposals(&Incidence::of(arrival.hit, arrival.direction));
+                let proposals = material.proposals(&Incidence::of(arrival.hit, arrival.direction, [1.0; 2]));
                 for (sum, proposals) in self.events.table_proposals.iter_mut().zip(proposals) {
                     *sum += proposals;
                 }

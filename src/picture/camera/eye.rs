@@ -13,6 +13,7 @@ use crate::picture::camera::view::View;
 use crate::picture::gather::{Density, Gathered};
 use crate::sample::coordinates::{Chooser, Purpose};
 use crate::scene::Scene;
+use crate::scene::media::{Interface, Media};
 use crate::surface::{EyeWeight, Incidence, Leg, Material, Way};
 use crate::transport::walk::MAX_EVENTS;
 
@@ -38,7 +39,7 @@ pub(crate) struct EyePath<'a, const C: usize> {
 }
 
 /// A path on its way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct Branch {
     origin: DVec3,
     direction: DVec3,
@@ -67,7 +68,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
         self.pending.push(Branch {
             origin,
             direction,
-            at: self.view.start,
+            at: self.view.start.clone(),
             weight: EyeWeight::ONE,
             share: 1.0,
             events: 0,
@@ -95,12 +96,17 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 }
             }
             let Some(hit) = hit else { return };
+            let Interface::Between(indices) = scene.media.interface(&hit, &path.at) else {
+                scene.media.leave(&mut path.at, &hit, hit.other_side());
+                path.origin = hit.position;
+                continue;
+            };
             let material = scene.material(hit.surface);
             if material.scatters() {
                 let lit = self.scattered(material, &hit, &path, chooser);
                 add(found, weight, lit);
             }
-            if !self.pass_on(material, &hit, &mut path, chooser) {
+            if !self.pass_on(material, (&hit, indices), &mut path, chooser) {
                 return;
             }
         }
@@ -112,11 +118,12 @@ impl<'a, const C: usize> EyePath<'a, C> {
     fn pass_on<R: Chooser>(
         &mut self,
         material: &Material,
-        hit: &Hit,
+        (hit, indices): (&Hit, [f64; 2]),
         path: &mut Branch,
         chooser: &mut R,
     ) -> bool {
-        let ways = material.specular(&Incidence::of(hit, path.direction));
+        let media = &self.view.scene.media;
+        let ways = material.specular(&Incidence::of(hit, path.direction, indices));
         let (way, through, chance) = match (ways.mirrored, ways.through) {
             (None, None) => return false,
             (Some(mirrored), None) => (mirrored, false, 1.0),
@@ -124,8 +131,8 @@ impl<'a, const C: usize> EyePath<'a, C> {
             (Some(mirrored), Some(straight)) => {
                 let r = if ways.lossless { mirrored.part[0] } else { 0.5 };
                 if ways.lossless && path.share * r.min(1.0 - r) >= LEAST_SHARE {
-                    let mut branch = Branch { share: path.share * r, ..*path };
-                    branch.take(hit, &mirrored, false, 1.0);
+                    let mut branch = Branch { share: path.share * r, ..path.clone() };
+                    branch.take(media, hit, &mirrored, false, 1.0);
                     self.pending.push(branch);
                     path.share *= 1.0 - r;
                     (straight, true, 1.0)
@@ -136,7 +143,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 }
             }
         };
-        path.take(hit, &way, through, chance);
+        path.take(media, hit, &way, through, chance);
         ways.lossless || path.weight.roulette(chooser)
     }
 
@@ -175,9 +182,9 @@ impl<'a, const C: usize> EyePath<'a, C> {
 
 impl Branch {
     /// Goes on from a surface along a way that was chosen with this chance.
-    fn take(&mut self, hit: &Hit, way: &Way, through: bool, chance: f64) {
+    fn take(&mut self, media: &Media, hit: &Hit, way: &Way, through: bool, chance: f64) {
         self.weight.follow(way, chance);
-        self.at.leave(hit, if hit.front == through { Side::Back } else { Side::Front });
+        media.leave(&mut self.at, hit, if hit.front == through { Side::Back } else { Side::Front });
         (self.origin, self.direction) = (hit.position, way.direction);
         self.events += 1;
     }
@@ -202,8 +209,8 @@ fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 
 fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, chooser: &mut R) -> [f64; 3] {
     let material = scene.material(hit.surface);
     let from = |side: Side| {
-        let mut at = *at;
-        at.leave(hit, side);
+        let mut at = at.clone();
+        scene.media.leave(&mut at, hit, side);
         at
     };
     let sides = [from(Side::Front), from(Side::Back)];
@@ -217,7 +224,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
             continue;
         }
         let start = &sides[usize::from(!wi.front)];
-        if scene.geometry.occluded(hit.position, light.towards, light.distance_m, start) {
+        if scene.is_hidden(hit.position, light.towards, light.distance_m, start.clone()) {
             continue;
         }
         let illuminance_lx = light.illuminance_lx * light.towards.dot(hit.normal).abs();

@@ -204,9 +204,9 @@ impl<'s, const C: usize> Splat<'s, C> {
         if along == 0.0 {
             return true;
         }
-        let mut whereabouts = *arrived;
-        whereabouts.leave(hit, if along > 0.0 { Side::Front } else { Side::Back });
-        self.scene.geometry.occluded(hit.position, wo, distance, &whereabouts)
+        let mut whereabouts = arrived.clone();
+        self.scene.media.leave(&mut whereabouts, hit, if along > 0.0 { Side::Front } else { Side::Back });
+        self.scene.is_hidden(hit.position, wo, distance, whereabouts)
     }
 }
 

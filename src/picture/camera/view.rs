@@ -56,6 +56,7 @@ impl<'s> View<'s> {
                 }
             }
         }
-        Ok(Self { scene, camera: camera.clone(), pinhole, start: Whereabouts::start(behind), seed })
+        let start = Whereabouts::start(behind).in_ambient(scene.camera_ambient);
+        Ok(Self { scene, camera: camera.clone(), pinhole, start, seed })
     }
 }

@@ -152,7 +152,8 @@ mod tests {
             normal: DVec3::Z,
             shading_normal: DVec3::Z,
             front: true,
-            closed: false,
+            body: crate::geometry::Body::Open,
+            touch: None,
         }
     }
 

@@ -1,0 +1,255 @@
+//! Faces in contact: which faces of two surfaces lie in one another, found when the scene is built.
+//!
+//! Two such faces are at the same distance along every ray, give or take rounding, so what is met first is decided by rule,
+//! never by rounding, names or place. Faces that look at each other have a film of no thickness between them: a photon meets
+//! its own body's face first, then stands in the film, before the other face. Where they are glued there is no film, and
+//! both are crossed at once, as are faces that look the same way.
+
+use glam::DVec3;
+
+use super::bvh::{BinaryTree, Bounds};
+use super::ray::Ray;
+use super::triangle::View;
+use super::{Body, Info, Met, Shape, Surface, SurfaceId};
+
+/// How a surface behaves towards those that it touches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Bond {
+    /// It is joined to them: there is no film between.
+    pub is_glued: bool,
+    /// It bounds a transparent medium; of two faces crossed at once, one that does not acts alone.
+    pub is_clear: bool,
+}
+
+/// A pair of surfaces of which faces are in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Contact {
+    /// Both, the lower number first; twice the same for a mesh that touches itself.
+    pub surfaces: [SurfaceId; 2],
+    /// The faces look at each other; else they look the same way.
+    pub facing: bool,
+}
+
+/// Faces in contact with one that is met, where it is met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Beyond a film: the face that comes next for what stands in the film.
+    pub film: Option<Met>,
+    /// Crossed at once with it.
+    pub joint: [Option<Met>; 2],
+}
+
+/// Of one primitive: another in contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Partner {
+    primitive: u32,
+    pub other: u32,
+    pub surface: u32,
+    /// They look at each other.
+    pub facing: bool,
+    /// They are crossed at once.
+    pub is_joint: bool,
+}
+
+/// All contacts of a scene.
+#[derive(Debug, Default)]
+pub(super) struct Contacts {
+    /// In the order of primitives.
+    partners: Vec<Partner>,
+    pairs: Vec<Contact>,
+    /// Pairs of transparent closed surfaces that cut each other; twice the same for one that cuts itself.
+    cuts: Vec<[SurfaceId; 2]>,
+}
+
+/// Coplanar within this many half-ulps of the largest coordinate: the rounding of corners that were rotated and moved.
+const COPLANAR: f64 = 64.0 * 0.5 * f64::EPSILON;
+
+impl Contacts {
+    /// The contacts of surfaces bound in these ways; none are looked for without bonds. The tree is that over the boxes of all
+    /// primitives, whose surfaces are `owner`.
+    pub fn find(
+        surfaces: &[Surface],
+        info: &[Info],
+        bonds: &[Bond],
+        (tree, boxes, owner): (&BinaryTree, &[Bounds], &[u32]),
+    ) -> Self {
+        if bonds.is_empty() || tree.order.is_empty() {
+            return Self::default();
+        }
+        let mut found = Self::default();
+        let is_body = |s: u32| bonds[s as usize].is_clear && info[s as usize].body != Body::Open;
+        pairs_of_boxes((tree, boxes, owner), is_body, |p, q| {
+            let (s, t) = (owner[p as usize], owner[q as usize]);
+            let shape = |s: u32| &surfaces[s as usize].shape;
+            let face = |p: u32, s: u32| (p - info[s as usize].first_primitive) as usize;
+            let facing = match (shape(s).triangle(face(p, s)), shape(t).triangle(face(q, t))) {
+                (Some(a), Some(b)) => {
+                    if s == t && a.iter().any(|v| b.contains(v)) {
+                        return; // Neighbours.
+                    }
+                    if is_body(s) && is_body(t) && cut(&a, &b) {
+                        found.cuts.push([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
+                    }
+                    facing(&a, &b)
+                }
+                (None, None) => coincide(shape(s), shape(t)).then_some(false),
+                _ => None,
+            };
+            let Some(facing) = facing else { return };
+            let is_glued = s == t || bonds[s as usize].is_glued || bonds[t as usize].is_glued;
+            let is_joint = !facing || is_glued;
+            for (primitive, other, surface) in [(p, q, t), (q, p, s)] {
+                found.partners.push(Partner { primitive, other, surface, facing, is_joint });
+            }
+            let surfaces = [SurfaceId(s.min(t)), SurfaceId(s.max(t))];
+            found.pairs.push(Contact { surfaces, facing });
+        });
+        found.partners.sort_unstable();
+        found.pairs.sort_unstable();
+        found.pairs.dedup();
+        found.cuts.sort_unstable();
+        found.cuts.dedup();
+        found
+    }
+
+    /// Pairs of surfaces in contact, each once a way.
+    pub fn pairs(&self) -> &[Contact] {
+        &self.pairs
+    }
+
+    /// Pairs of transparent closed surfaces that cut each other, by their numbers in order; twice the same for one that cuts
+    /// itself.
+    pub fn cuts(&self) -> &[[SurfaceId; 2]] {
+        &self.cuts
+    }
+
+    /// What is in contact with a primitive.
+    pub fn partners(&self, primitive: u32) -> impl Iterator<Item = &Partner> {
+        let first = self.partners.partition_point(|p| p.primitive < primitive);
+        self.partners[first..].iter().take_while(move |p| p.primitive == primitive)
+    }
+}
+
+/// Whether a ray's line meets a triangle that is in contact with one which it meets: whether they touch there.
+pub(super) fn covers(triangle: &[DVec3; 3], ray: &Ray) -> Option<super::triangle::Crossing> {
+    View::new(&triangle.map(|v| v.to_array()), ray).crossing()
+}
+
+/// Calls for every pair of primitives of different surfaces (and of one surface with itself where `with_itself` says so)
+/// whose boxes meet.
+fn pairs_of_boxes(
+    (tree, boxes, owner): (&BinaryTree, &[Bounds], &[u32]),
+    with_itself: impl Fn(u32) -> bool,
+    mut call: impl FnMut(u32, u32),
+) {
+    const MIXED: u32 = u32::MAX;
+    // The one surface of a node; children stand behind their parents.
+    let mut only = vec![MIXED; tree.nodes.len()];
+    for i in (0..tree.nodes.len()).rev() {
+        let node = &tree.nodes[i];
+        let of = if node.count > 0 {
+            let primitives = &tree.order[node.first as usize..(node.first + node.count) as usize];
+            let first = owner[primitives[0] as usize];
+            primitives.iter().all(|p| owner[*p as usize] == first).then_some(first)
+        } else {
+            let [l, r] = node.children.map(|c| only[c as usize]);
+            (l == r).then_some(l)
+        };
+        only[i] = of.unwrap_or(MIXED);
+    }
+    let is_dull = |i: usize, j: usize| only[i] == only[j] && only[i] != MIXED && !with_itself(only[i]);
+    let mut work = vec![(0usize, 0usize)];
+    while let Some((i, j)) = work.pop() {
+        let (a, b) = (&tree.nodes[i], &tree.nodes[j]);
+        if is_dull(i, j) || !meet(&a.bounds, &b.bounds) {
+            continue;
+        }
+        match (a.count > 0, b.count > 0) {
+            (true, true) => {
+                let of = |n: &super::bvh::BinaryNode| n.first as usize..(n.first + n.count) as usize;
+                for &p in &tree.order[of(a)] {
+                    for &q in &tree.order[of(b)] {
+                        let (s, t) = (owner[p as usize], owner[q as usize]);
+                        let is_new = i != j || p < q;
+                        if is_new && (s != t || with_itself(s)) && meet(&boxes[p as usize], &boxes[q as usize]) {
+                            call(p, q);
+                        }
+                    }
+                }
+            }
+            _ if i == j => {
+                let [l, r] = a.children.map(|c| c as usize);
+                work.extend([(l, l), (l, r), (r, r)]);
+            }
+            (a_is_leaf, b_is_leaf) => {
+                let split_first = b_is_leaf || (!a_is_leaf && a.bounds.half_area() >= b.bounds.half_area());
+                let (node, other) = if split_first { (a, j) } else { (b, i) };
+                work.extend(node.children.map(|c| (c as usize, other)));
+            }
+        }
+    }
+}
+
+fn meet(a: &Bounds, b: &Bounds) -> bool {
+    (0..3).all(|k| a.lo[k] <= b.hi[k] && b.lo[k] <= a.hi[k])
+}
+
+/// Exact shapes in one place.
+fn coincide(a: &Shape, b: &Shape) -> bool {
+    match (a, b) {
+        (Shape::Sphere(a), Shape::Sphere(b)) => a == b,
+        (Shape::Paraboloid(a), Shape::Paraboloid(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// For triangles in one plane that share area, to the rounding of their corners: whether they look at each other.
+fn facing(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<bool> {
+    let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
+    let (na, nb) = (normal(a), normal(b));
+    let size = a.iter().chain(b).fold(0.0f64, |m, v| m.max(v.abs().max_element()));
+    let rounding = COPLANAR * size;
+    // The plane of the larger one is the better known.
+    let (plane, other) = if na.length_squared() >= nb.length_squared() { (a, b) } else { (b, a) };
+    let n = normal(plane).try_normalize()?;
+    let [least, greatest] = extent(other.iter().map(|v| (*v - plane[0]).dot(n)));
+    if least < -rounding || greatest > rounding {
+        return None;
+    }
+    // No edge of either separates them in the plane (separating axis theorem).
+    for triangle in [a, b] {
+        for k in 0..3 {
+            let across = n.cross(triangle[(k + 1) % 3] - triangle[k]).try_normalize()?;
+            let [a0, a1] = extent(a.iter().map(|v| v.dot(across)));
+            let [b0, b1] = extent(b.iter().map(|v| v.dot(across)));
+            if a1 <= b0 + rounding || b1 <= a0 + rounding {
+                return None;
+            }
+        }
+    }
+    Some(na.dot(nb) < 0.0)
+}
+
+/// Whether an edge of one triangle passes through the inside of the other, by more than the rounding of their corners.
+fn cut(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
+    let size = a.iter().chain(b).fold(0.0f64, |m, v| m.max(v.abs().max_element()));
+    let rounding = COPLANAR * size;
+    let passes = |t: &[DVec3; 3], p: DVec3, q: DVec3| {
+        let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+        let Some(n) = normal.try_normalize() else { return false };
+        let (from, to) = ((p - t[0]).dot(n), (q - t[0]).dot(n));
+        if from.abs() <= rounding || to.abs() <= rounding || (from < 0.0) == (to < 0.0) {
+            return false;
+        }
+        let point = p + (q - p) * (from / (from - to));
+        (0..3).all(|k| {
+            let edge = t[(k + 1) % 3] - t[k];
+            n.cross(edge).dot(point - t[k]) > rounding * edge.length()
+        })
+    };
+    (0..3).any(|k| passes(b, a[k], a[(k + 1) % 3]) || passes(a, b[k], b[(k + 1) % 3]))
+}
+
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
+}
