@@ -106,6 +106,15 @@ fn too_large(path: &Path, limit_bytes: u64) -> Diagnostic {
     )
 }
 
+/// That bytes which are there already are no more than `limit_bytes`.
+pub(crate) fn check_length(bytes: &[u8], limit_bytes: u64) -> Result<()> {
+    if bytes.len() as u64 <= limit_bytes {
+        return Ok(());
+    }
+    let found = format!("more than {limit_bytes} bytes");
+    Err(Diagnostic::new(Kind::Limit, found, format!("at most {limit_bytes} bytes")))
+}
+
 /// The bytes of a regular file of at most `limit_bytes`, even if it grows while it is read.
 pub(crate) fn read_capped(path: &Path, limit_bytes: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();

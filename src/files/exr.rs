@@ -100,7 +100,11 @@ fn encode(
         if described.other.insert(text(name), attribute(value)).is_some() {
             return Err(bad_name("attribute", name, "a name used once"));
         }
-        check_attribute_name(name)?;
+        check_name("attribute", name)?;
+        // Names that the format gives a type and a meaning of its own.
+        if ::exr::meta::header::standard_names::ALL.contains(&name.as_bytes()) {
+            return Err(bad_name("attribute", name, "a name that OpenEXR does not use itself"));
+        }
     }
     let encoding = exr::Encoding {
         compression: exr::Compression::ZIP16,
@@ -139,7 +143,7 @@ fn check_channels(width: usize, height: usize, channels: &[Channel<'_>]) -> Resu
             let found = format!("{length} values in channel \"{}\"", channel.name);
             return Err(Diagnostic::new(Kind::Range, found, format!("{cells} values")));
         }
-        check_length("channel", channel.name)?;
+        check_name("channel", channel.name)?;
         if channels[..i].iter().any(|other| other.name == channel.name) {
             return Err(bad_name("channel", channel.name, "a name used once"));
         }
@@ -147,17 +151,7 @@ fn check_channels(width: usize, height: usize, channels: &[Channel<'_>]) -> Resu
     Ok(())
 }
 
-/// Names that the format gives a type and a meaning of its own.
-fn check_attribute_name(name: &str) -> Result<()> {
-    check_length("attribute", name)?;
-    let reserved = ::exr::meta::header::standard_names::ALL;
-    if reserved.contains(&name.as_bytes()) {
-        return Err(bad_name("attribute", name, "a name that OpenEXR does not use itself"));
-    }
-    Ok(())
-}
-
-fn check_length(what: &str, name: &str) -> Result<()> {
+fn check_name(what: &str, name: &str) -> Result<()> {
     if name.is_empty() || name.len() > 255 || name.contains('\0') {
         return Err(bad_name(what, name, "a name of 1 to 255 bytes without a zero byte"));
     }

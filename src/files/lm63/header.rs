@@ -1,7 +1,7 @@
 //! What stands before the numbers: version line, labels, `TILT=`.
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::lm63::tokens::{line_column, quoted};
+use crate::files::excerpt::{line_column, quoted};
 use crate::photometry::Revision;
 use nom::bytes::complete::{tag_no_case, take_until};
 use nom::character::complete::{char, multispace0, space0};
@@ -117,24 +117,16 @@ pub(crate) fn read_header(text: &str) -> Result<Header<'_>> {
             numbers_at = Some(offset);
         }
         if header.labels.len() == MAX_LABELS {
-            let d = Diagnostic::new(
-                Kind::Limit,
-                "one more label line",
-                format!("at most {MAX_LABELS} label lines"),
-            );
+            let required = format!("at most {MAX_LABELS} label lines");
+            let d = Diagnostic::new(Kind::Limit, "one more label line", required);
             return Err(d.at(line_column(text, offset).0, 1));
         }
         add_label(&mut header.labels, line);
     }
     let (line, column) = line_column(text, numbers_at.unwrap_or(text.trim_end().len()));
     let found = if numbers_at.is_some() { "numbers before any TILT line" } else { "the end of the file" };
-    Err(Diagnostic::new(
-        Kind::Missing,
-        found,
-        "a line TILT=NONE, TILT=INCLUDE or TILT=file before the numbers",
-    )
-    .at(line, column)
-    .hint("is this an LM-63 file?"))
+    let required = "a line TILT=NONE, TILT=INCLUDE or TILT=file before the numbers";
+    Err(Diagnostic::new(Kind::Missing, found, required).at(line, column).hint("is this an LM-63 file?"))
 }
 
 fn version_warning(line: &str, revision: Revision) -> Diagnostic {
