@@ -126,7 +126,7 @@ pub fn main() -> ExitCode {
         }
         Ok(Sub::Render(args)) => render::run(&args),
         Ok(Sub::Photometry(args)) => photometry::run(&args),
-        Ok(Sub::Check(args)) => Ok(check::run(&args)),
+        Ok(Sub::Check(args)) => check::run(&args),
         Ok(Sub::Compare(args)) => compare::run(&args),
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),

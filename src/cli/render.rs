@@ -20,7 +20,7 @@ use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 
 use super::args::MAX_THREADS;
-use super::progress::{INTERRUPTED, Progress, catch_interrupts};
+use super::progress::{INTERRUPTED, catch_interrupts, progress_bar};
 use super::{Done, RenderArgs, algorithm, count, exit, picture, print, say, warn};
 
 /// Reads and builds a scene; without a path the built-in one.
@@ -185,22 +185,23 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
 
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<(Outcome, Option<AnyPicture>)> {
     let pool = thread_pool(args.threads)?;
-    let progress = Progress::new(args.quiet, plan.photons());
-    progress.say("tracing");
+    let progress = progress_bar(args.quiet, plan.photons());
+    progress.set_message("tracing");
     // The camera may have been at work before: photons are traced pass by pass.
     let photons = |photons| {
-        progress.say("tracing");
-        progress.add(photons);
+        progress.set_message("tracing");
+        progress.inc(photons);
     };
     let outcome = pool.install(|| {
         if scene.camera.is_none() {
             return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
         }
-        let watch = Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|_| progress.say("camera") };
+        let watch =
+            Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|_| progress.set_message("camera") };
         let (outcome, picture) = trace_picture(scene, plan, args.save_map.is_some(), watch)?;
         Ok((outcome, Some(picture)))
     });
-    progress.finish();
+    progress.finish_and_clear();
     outcome
 }
 

@@ -1,9 +1,9 @@
 //! Parts that a study has finished, and what names them.
 
+use indicatif::ProgressBar;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::cli::progress::Progress;
 use crate::cli::say;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::parts::{Found, Parts};
@@ -22,12 +22,12 @@ pub fn scene_key(scene: &Scene) -> String {
 }
 
 /// A part that is there and whole; one that is damaged is told, and made again.
-pub fn found(parts: &Parts, progress: &Progress, kind: &str, key: &str) -> Option<Vec<u8>> {
+pub fn found(parts: &Parts, progress: &ProgressBar, kind: &str, key: &str) -> Option<Vec<u8>> {
     match parts.load(kind, key) {
         Found::Whole(content) => Some(content),
         Found::Missing => None,
         Found::Damaged(diagnostic) => {
-            progress.aside(|| say(&format!("warning: {diagnostic}")));
+            progress.suspend(|| say(&format!("warning: {diagnostic}")));
             None
         }
     }
@@ -46,7 +46,7 @@ pub fn command_line() -> String {
 /// The same of a part in JSON.
 pub fn found_json<T: DeserializeOwned>(
     parts: &Parts,
-    progress: &Progress,
+    progress: &ProgressBar,
     kind: &str,
     key: &str,
 ) -> Option<T> {

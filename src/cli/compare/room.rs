@@ -2,7 +2,9 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
+use indicatif::ProgressBar;
+
+use crate::cli::progress::{INTERRUPTED, catch_interrupts, processor_time, progress_bar};
 use crate::cli::render::{make_directory, thread_pool};
 use crate::cli::{Done, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
@@ -23,18 +25,18 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     make_directory(&args.output)?;
     catch_interrupts();
     let pool = thread_pool(args.threads)?;
-    let progress = Progress::new(args.quiet, options.photons());
+    let progress = progress_bar(args.quiet, options.photons());
     let parts = Parts::new(args.output.join("parts"));
     let mut measurements = Vec::new();
     for task in options.tasks() {
-        progress.say(task.to_string());
+        progress.set_message(task.to_string());
         match pool.install(|| measurement(scene, &task, &parts, &progress)) {
             Ok(measurement) => measurements.push(measurement),
             Err(e) if e.kind() == Kind::Interrupted => break,
             Err(e) => return Err(e.into()),
         }
     }
-    progress.finish();
+    progress.finish_and_clear();
     if INTERRUPTED.load(Ordering::Relaxed) {
         say(&format!(
             "caustix: interrupted; {} of {} measurements are done. The same command goes on from the parts in {}",
@@ -79,13 +81,13 @@ fn refuse_what_has_no_meaning(args: &CompareArgs) -> Result<()> {
     }
 }
 
-fn measurement(scene: &Scene, task: &Task, parts: &Parts, progress: &Progress) -> Result<Measurement> {
+fn measurement(scene: &Scene, task: &Task, parts: &Parts, progress: &ProgressBar) -> Result<Measurement> {
     let key = format!("{}\nroom: {task}", scene_key(scene));
     if let Some(kept) = found_json(parts, progress, "room", &key) {
-        progress.add(task.photons);
+        progress.inc(task.photons);
         return Ok(kept);
     }
-    let measured = measure(scene, task, processor_time, &INTERRUPTED, &|n| progress.add(n))?;
+    let measured = measure(scene, task, processor_time, &INTERRUPTED, &|n| progress.inc(n))?;
     store_json(parts, "room", &key, &measured)?;
     Ok(measured)
 }

@@ -2,7 +2,9 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
+use indicatif::ProgressBar;
+
+use crate::cli::progress::{INTERRUPTED, catch_interrupts, processor_time, progress_bar};
 use crate::cli::render::{make_directory, thread_pool};
 use crate::cli::{Done, count, exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
@@ -50,10 +52,10 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     make_directory(&args.output)?;
     catch_interrupts();
     let pool = thread_pool(args.threads)?;
-    let progress = Progress::new(args.quiet, asked.work());
+    let progress = progress_bar(args.quiet, asked.work());
     let job = Job { scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
     let study = pool.install(|| job.study(args))?;
-    progress.finish();
+    progress.finish_and_clear();
     if let Some(study) = &study {
         let table = Table::new(study);
         let (_, errors) = write_each(
@@ -170,7 +172,7 @@ struct Job<'a> {
     scene: &'a Scene,
     asked: Asked<'a>,
     parts: Parts,
-    progress: &'a Progress,
+    progress: &'a ProgressBar,
 }
 
 impl Job<'_> {
@@ -231,17 +233,17 @@ impl Job<'_> {
         let cells = self.asked.grids.cell_count();
         let mut replicates = Vec::new();
         for replicate in 0..REPLICATES {
-            self.progress.say(format!("reference {} of {REPLICATES}", replicate + 1));
+            self.progress.set_message(format!("reference {} of {REPLICATES}", replicate + 1));
             let part = format!("{key}\nreplicate {replicate}");
             let found = found(&self.parts, self.progress, "reference", &part)
                 .and_then(|bytes| from_bytes(&bytes, cells));
             if let Some(counts) = found {
-                self.progress.add(plan.photons_per_replicate);
+                self.progress.inc(plan.photons_per_replicate);
                 replicates.push(counts);
                 continue;
             }
             let traced = trace_replicate(&self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
-                self.progress.add(n);
+                self.progress.inc(n);
             })?;
             let Some(counts) = traced else { return Ok(None) };
             self.parts.store("reference", &part, &to_bytes(&counts))?;
@@ -260,7 +262,12 @@ impl Job<'_> {
                 if !asked.seeds_of(*algorithm).contains(seed) {
                     continue;
                 }
-                self.progress.say(format!("{}, seed {} of {}", algorithm.name(), k + 1, asked.seeds.len()));
+                self.progress.set_message(format!(
+                    "{}, seed {} of {}",
+                    algorithm.name(),
+                    k + 1,
+                    asked.seeds.len()
+                ));
                 match self.run(reference, *algorithm, *seed, reference_key)? {
                     Some(found) => runs_of.extend(found),
                     None => return Ok(runs),
@@ -281,10 +288,10 @@ impl Job<'_> {
         let asked = &self.asked;
         let key = format!("{reference_key}\nrun: {} seed {seed}, N {:?}", algorithm.name(), asked.ladder);
         if let Some(found) = found_json(&self.parts, self.progress, "run", &key) {
-            self.progress.add(asked.photons_of(algorithm));
+            self.progress.inc(asked.photons_of(algorithm));
             return Ok(Some(found));
         }
-        let progress = |n| self.progress.add(n);
+        let progress = |n| self.progress.inc(n);
         let traced =
             reference.measure(algorithm, seed, &asked.ladder, processor_time, &INTERRUPTED, &progress)?;
         if let Some(traced) = &traced {

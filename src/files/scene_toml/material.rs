@@ -29,9 +29,8 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
     if table.is_unavailable("type", &["conductor"], &TYPES) {
         return None;
     }
-    let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
-    let kind = table.require("type", kind, required)?;
+    let kind = table.needed("type", required, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
     let mut reference = None;
     let make = match kind {
         "dielectric" => read_dielectric(&mut table).map(made),
@@ -61,8 +60,8 @@ fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
 
 fn read_lambertian(table: &mut Table<'_, '_>) -> Option<Material> {
     table.call("a lambertian material");
-    let reflectance = table.number_or_vector("reflectance", &REFLECTANCE);
-    let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+    let reflectance =
+        table.needed("reflectance", REFLECTANCE.words, |t, key| t.number_or_vector(key, &REFLECTANCE));
     let transmittance = table.number_or_vector("transmittance", &TRANSMITTANCE).unwrap_or(DVec3::ZERO);
     let reflectance = reflectance?.to_array();
     if transmittance != DVec3::ZERO {
@@ -77,7 +76,7 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Material> {
     table.call("a dielectric");
     let ior = table.number("ior", &IOR);
     let ior_outside = table.number("ior_outside", &IOR).unwrap_or(1.0);
-    let ior = table.require("ior", ior, IOR.words)?;
+    let ior = table.needed("ior", IOR.words, |_, _| ior)?;
     if ior == ior_outside {
         let place = table.place_of("ior").unwrap_or(table.place());
         let found = format!("ior = {ior}, the same as ior_outside");

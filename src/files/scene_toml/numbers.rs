@@ -23,8 +23,7 @@ impl<'t> Table<'t, '_> {
 
     /// The same, absent: an error.
     pub fn needed_number(&mut self, key: &'static str, interval: &Interval) -> Option<f64> {
-        let number = self.number(key, interval);
-        self.require(key, number, interval.words)
+        self.needed(key, interval.words, |table, key| table.number(key, interval))
     }
 
     fn number_in(&self, label: &str, value: Value<'t>, interval: &Interval) -> Option<f64> {
@@ -74,8 +73,7 @@ impl<'t> Table<'t, '_> {
 
     /// The same, absent: an error; `words` are for a message.
     pub fn needed_vector(&mut self, key: &'static str, interval: &Interval, words: &str) -> Option<DVec3> {
-        let vector = self.vector(key, interval);
-        self.require(key, vector, words)
+        self.needed(key, words, |table, key| table.vector(key, interval))
     }
 
     /// A number for all three components, or a vector.

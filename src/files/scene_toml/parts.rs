@@ -49,12 +49,8 @@ impl Parts {
 
         let emitter_tables = parts_named(&mut root, "emitter");
         if root.place_of("emitter").is_none() {
-            document.error_at(
-                start,
-                Kind::Missing,
-                "a scene without [[emitter]]",
-                "at least one [[emitter]]",
-            );
+            let found = "a scene without [[emitter]]";
+            document.error_at(start, Kind::Missing, found, "at least one [[emitter]]");
         }
         let mut names = Names::new("emitter");
         let emitters = emitter_tables
@@ -70,29 +66,24 @@ impl Parts {
         let mut material_names = Names::new("material");
         let mut materials = Vec::new();
         for (index, (name, table)) in material_tables.into_iter().enumerate() {
-            material_names.insert(document, &name, table.place(), index);
+            material_names.insert(document, &name, &name, table.place(), index);
             materials.push(material::read(table));
         }
 
         let mut surface_names = Names::new("surface");
         let mut cells = 0;
-        let surfaces: Vec<_> = parts_named(&mut root, "surface")
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| {
-                surface::read(table, index, &mut surface_names, &material_names, &mut cells)
-            })
-            .collect();
+        let mut surfaces = Vec::new();
+        for (index, table) in parts_named(&mut root, "surface").into_iter().enumerate() {
+            surfaces.push(surface::read(table, index, &mut surface_names, &material_names, &mut cells));
+        }
 
         let mut names = Names::new("receiver");
-        let receivers: Vec<_> = parts_named(&mut root, "receiver")
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| {
-                let place = table.place();
-                Some((receiver::read(table, index, &mut names, &surface_names, &surfaces)?, place))
-            })
-            .collect();
+        let mut receivers = Vec::new();
+        for (index, table) in parts_named(&mut root, "receiver").into_iter().enumerate() {
+            let place = table.place();
+            let receiver = receiver::read(table, index, &mut names, &surface_names, &surfaces);
+            receivers.push(receiver.map(|receiver| (receiver, place)));
+        }
         if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
             let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
@@ -131,8 +122,8 @@ fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<Surfac
 /// `[compare]`: reflections.
 fn read_compare(mut table: Table<'_, '_>) -> Option<u32> {
     let words = format!("a whole number from 0 to {MOST_COMPARED_REFLECTIONS}");
-    let reflections = table.integer("reflections", 0, MOST_COMPARED_REFLECTIONS, &words);
-    let reflections = table.require("reflections", reflections, &words);
+    let reflections =
+        table.needed("reflections", &words, |t, key| t.integer(key, 0, MOST_COMPARED_REFLECTIONS, &words));
     table.finish();
     reflections.map(|r| r as u32)
 }

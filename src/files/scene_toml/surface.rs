@@ -26,16 +26,14 @@ pub(super) fn read(
     cells: &mut u64,
 ) -> Option<SurfacePart> {
     let place = table.place();
-    let name = table.text("name");
-    let name = table.require("name", name, "a name of its own, in quotes");
+    let name = table.needed("name", "a name of its own, in quotes", Table::text);
     if let Some(name) = &name {
-        names.insert(table.document(), &name.value, name.place, index);
+        names.insert(table.document(), &name.value, &name.value, name.place, index);
     }
     let material = materials.refer(&mut table, "material");
     let transform = read_transform(&mut table);
-    let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let words = "\"mesh\", \"rectangle\", \"box\", \"sphere\", \"paraboloid\" or \"heightfield\"";
-    let kind = table.require("type", kind, words)?;
+    let kind = table.needed("type", words, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
     let shape: Option<Make<Shape>> = match kind {
         "mesh" => read_mesh(&mut table, transform),
         "heightfield" => {
@@ -57,7 +55,7 @@ pub(super) fn read(
     };
     table.finish();
     let of_faces = ["mesh", "box", "heightfield"].contains(&kind).then_some(kind);
-    Some(SurfacePart { name: name?.value, material: material?.index, shape: shape?, of_faces, place })
+    Some(SurfacePart { name: name?.value, material: material?.1, shape: shape?, of_faces, place })
 }
 
 /// A shape that is not moved keeps its bits: no normal is normalised again.

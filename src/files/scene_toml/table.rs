@@ -114,8 +114,14 @@ impl<'t, 'd> Table<'t, 'd> {
         self.document.error_at(self.place, Kind::Missing, found, format!("{key} = {}", required.into()));
     }
 
-    /// What a taken value is; absent or wrong: an error.
-    pub fn require<T>(&self, key: &str, value: Option<T>, required: &str) -> Option<T> {
+    /// What `read` makes of a key; absent: an error.
+    pub fn needed<T>(
+        &mut self,
+        key: &'static str,
+        required: &str,
+        read: impl FnOnce(&mut Self, &'static str) -> Option<T>,
+    ) -> Option<T> {
+        let value = read(self, key);
         if value.is_none() && !self.entries.contains_key(key) {
             self.missing(key, required);
         }
@@ -134,8 +140,7 @@ impl<'t, 'd> Table<'t, 'd> {
     /// The path of a file: a text that is not empty.
     pub fn path(&mut self, key: &'static str) -> Option<Placed<String>> {
         const REQUIRED: &str = "the path of a file, relative to the scene file";
-        let path = self.text(key);
-        let path = self.require(key, path, REQUIRED)?;
+        let path = self.needed(key, REQUIRED, Self::text)?;
         if path.value.is_empty() || path.value.contains('\0') {
             self.error(key, Kind::Range, REQUIRED);
             return None;
@@ -152,9 +157,11 @@ impl<'t, 'd> Table<'t, 'd> {
             return Some(*meaning);
         }
         let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-        let near = found.and_then(|word| suggest::nearest(word, &known));
-        let error = Diagnostic::new(Kind::Unknown, self.shown(key, value), suggest::list(&known));
-        self.document.error(suggest::hinted(error, near, '"').placed(Some(self.at(value))));
+        self.document.error(|| {
+            let error = Diagnostic::new(Kind::Unknown, self.shown(key, value), suggest::list(&known));
+            let error = error.placed(Some(self.at(value)));
+            suggest::hinted(error, found.unwrap_or_default(), &known, '"')
+        });
         None
     }
 
@@ -224,15 +231,13 @@ impl<'t, 'd> Table<'t, 'd> {
     /// Report every key that nobody asked for, with the nearest one that is known here.
     pub fn finish(self) {
         for (key, _) in self.entries.iter().filter(|(key, _)| !self.known.contains(&key.get_ref().as_ref())) {
-            if self.document.is_full() {
-                self.document.count_error();
-                continue;
-            }
-            let name = key.get_ref().as_ref();
-            let found = format!("the unknown key `{}` in {}", shown(name), self.what);
-            let error = Diagnostic::new(Kind::Unknown, found, suggest::list(&self.known));
-            let error = suggest::hinted(error, suggest::nearest(name, &self.known), '`');
-            self.document.error(error.placed(Some(self.document.place(key.span().start))));
+            self.document.error(|| {
+                let name = key.get_ref().as_ref();
+                let found = format!("the unknown key `{}` in {}", shown(name), self.what);
+                let error = Diagnostic::new(Kind::Unknown, found, suggest::list(&self.known));
+                let error = error.placed(Some(self.document.place(key.span().start)));
+                suggest::hinted(error, name, &self.known, '`')
+            });
         }
     }
 }
