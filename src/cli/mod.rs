@@ -66,13 +66,6 @@ enum Sub {
     Bsdf(BsdfArgs),
 }
 
-/// `caustix` without a subcommand.
-#[derive(Debug, Parser)]
-struct RenderCommand {
-    #[command(flatten)]
-    args: RenderArgs,
-}
-
 /// What is not built, and what there is instead.
 const INSTEAD: [(&str, &str); 3] = [
     ("--error", "--photons N sets the effort; the summary and report.json tell the standard errors it gave"),
@@ -115,7 +108,7 @@ type Done = std::result::Result<u8, Failure>;
 pub fn main() -> ExitCode {
     let parsed = Command::try_parse().and_then(|command| match command.subcommand {
         Some(subcommand) => Ok(subcommand),
-        None => Ok(Sub::Render(RenderCommand::try_parse_from(["caustix"])?.args)),
+        None => RenderArgs::try_parse_from(["caustix"]).map(Sub::Render),
     });
     let done = match parsed.map_err(with_hint) {
         Err(error) => {

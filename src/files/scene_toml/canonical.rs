@@ -12,7 +12,10 @@ type HashOf<'h> = &'h dyn Fn(&str) -> Option<String>;
 /// `hash_of` gives the hash. A text that is no TOML stays as it is.
 pub(crate) fn canonical(text: &str, hash_of: HashOf<'_>) -> String {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
-    DeTable::parse(body).map_or(text.to_string(), |root| of_table(root.get_ref(), "camera", hash_of))
+    match DeTable::parse(body) {
+        Ok(root) => of_table(root.get_ref(), "camera", hash_of),
+        Err(_) => text.to_string(),
+    }
 }
 
 fn of_table(table: &DeTable<'_>, without: &str, hash_of: HashOf<'_>) -> String {
