@@ -144,15 +144,12 @@ impl Check {
             out += &format!("receiver   {}: {} cells, {} m2\n", r.name, r.cells, digits(r.area_m2));
         }
         if let Some(c) = &self.camera {
-            let [columns, rows] = c.pixels;
+            let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);
             let photons = match c.photon_memory_mb {
                 0.0 => String::new(),
                 mb => format!(", at most {mb:.0} MB of photons at a time"),
             };
-            out += &format!(
-                "camera     {columns} x {rows} pixels of {} samples, {}{photons}\n",
-                c.samples, c.method
-            );
+            out += &format!("camera     {columns} x {rows} pixels of {samples} samples, {method}{photons}\n");
         }
         out + &format!("memory     {:.1} MB\n", self.memory_mb)
     }

@@ -10,6 +10,7 @@ mod compare;
 mod sample;
 mod bsdf;
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -86,23 +87,8 @@ fn with_hint(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// Why a subcommand did not do what it was asked for.
-struct Failure(Vec<Diagnostic>);
-
-impl From<Diagnostic> for Failure {
-    fn from(error: Diagnostic) -> Self {
-        Self(vec![error])
-    }
-}
-
-impl From<Vec<Diagnostic>> for Failure {
-    fn from(errors: Vec<Diagnostic>) -> Self {
-        Self(errors)
-    }
-}
-
 /// The exit code of a subcommand, or why it failed.
-type Done = std::result::Result<u8, Failure>;
+type Done = Result<u8, Vec<Diagnostic>>;
 
 /// Runs the command with the arguments of the process.
 pub fn main() -> ExitCode {
@@ -124,19 +110,17 @@ pub fn main() -> ExitCode {
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
     };
-    ExitCode::from(done.unwrap_or_else(|Failure(errors)| fail(&errors)))
+    ExitCode::from(done.unwrap_or_else(|errors| fail(&errors)))
 }
 
 /// A line to stderr; a closed stderr is no reason to fail.
 #[allow(clippy::print_stderr)]
 fn say(line: &str) {
-    use std::io::Write;
     let _written = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Text to stdout. A reader that has gone away (a closed pipe) is no reason to fail.
 fn print(text: &str) {
-    use std::io::Write;
     let mut out = std::io::stdout().lock();
     let _written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

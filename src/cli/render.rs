@@ -89,7 +89,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         print(&format!("written to {}\n", directory.display()));
     }
     if !unwritten.is_empty() {
-        return Err(unwritten.into());
+        return Err(unwritten);
     }
     if interrupted {
         say(&format!(
@@ -149,12 +149,8 @@ fn plan(args: &RenderArgs, run: &RunDefaults, photons: Option<u64>) -> Result<Pl
 
 fn say_rounding(asked: Option<u64>, plan: &Plan) {
     if let Some(asked) = asked.filter(|n| *n != plan.photons()) {
-        say(&format!(
-            "caustix: {} photons instead of {}: {} replicates of equal size",
-            grouped(plan.photons()),
-            grouped(asked),
-            plan.replicates()
-        ));
+        let (traced, asked, replicates) = (grouped(plan.photons()), grouped(asked), plan.replicates());
+        say(&format!("caustix: {traced} photons instead of {asked}: {replicates} replicates of equal size"));
     }
 }
 
@@ -172,11 +168,9 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
     let report = SavedReport::new(scene, plan, map, camera, started.elapsed().as_secs_f64());
     write_report(&directory, &report)?;
     if !args.quiet {
-        print(&format!("scene      {}\n", scene.identity.name));
-        print(&format!(
-            "photons    those saved in {}; none were traced, so receivers have no maps\n",
-            map.display()
-        ));
+        let (name, map) = (&scene.identity.name, map.display());
+        print(&format!("scene      {name}\nphotons    those saved in {map}; "));
+        print("none were traced, so receivers have no maps\n");
         print(&report.camera.text());
         print(&format!("written to {}\n", directory.display()));
     }
@@ -230,19 +224,16 @@ pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
 /// The directory that was asked for, but for interrupted results that would replace those of `more` photons there: they go
 /// into `interrupted/` beside them.
 fn beside_earlier(output: &Path, interrupted: bool, more: impl Fn(u64) -> bool) -> Result<PathBuf> {
-    if !interrupted {
+    let earlier = || {
+        let text = std::fs::read_to_string(output.join("report.json")).ok()?;
+        serde_json::from_str::<serde_json::Value>(&text).ok()?.get("photons")?.as_u64()
+    };
+    if !interrupted || !earlier().is_some_and(more) {
         return Ok(output.to_path_buf());
     }
-    let earlier = std::fs::read_to_string(output.join("report.json"))
-        .ok()
-        .and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok())
-        .and_then(|report| report.get("photons").and_then(serde_json::Value::as_u64));
-    if earlier.is_some_and(more) {
-        let beside = output.join("interrupted");
-        make_directory(&beside, FOR_RESULTS)?;
-        return Ok(beside);
-    }
-    Ok(output.to_path_buf())
+    let beside = output.join("interrupted");
+    make_directory(&beside, FOR_RESULTS)?;
+    Ok(beside)
 }
 
 fn write_report(directory: &Path, report: &impl serde::Serialize) -> Result<()> {

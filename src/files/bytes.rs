@@ -99,11 +99,9 @@ fn open(path: &Path, limit_bytes: u64) -> Result<File> {
 }
 
 fn too_large(path: &Path, limit_bytes: u64) -> Diagnostic {
-    Diagnostic::new(
-        Kind::Limit,
-        format!("the file `{}`, which is larger than {} MiB", path.display(), limit_bytes >> 20),
-        format!("a file of at most {} MiB", limit_bytes >> 20),
-    )
+    let (shown, limit) = (path.display(), limit_bytes >> 20);
+    let found = format!("the file `{shown}`, which is larger than {limit} MiB");
+    Diagnostic::new(Kind::Limit, found, format!("a file of at most {limit} MiB"))
 }
 
 /// That bytes which are there already are no more than `limit_bytes`.

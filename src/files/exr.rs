@@ -87,14 +87,10 @@ fn encode(
     attributes: &[(String, Value)],
     light: Light,
 ) -> Result<Vec<u8>> {
-    check_channels(width, height, channels)?;
-    let list = channels.iter().map(|channel| {
-        let samples = match channel.data {
-            Data::F32(values) => exr::FlatSamples::F32(values.to_vec()),
-            Data::U32(values) => exr::FlatSamples::U32(values.to_vec()),
-        };
-        exr::AnyChannel::new(text(channel.name), samples)
-    });
+    let cells = width.checked_mul(height).filter(|&n| n > 0 && n <= MOST_PIXELS).ok_or_else(|| {
+        Diagnostic::new(Kind::Range, format!("a map of {width} x {height} cells"), "1 to 2^28 cells")
+    })?;
+    let channels = checked(channels, cells)?;
     let mut described = exr::LayerAttributes::default();
     for (name, value) in attributes {
         if described.other.insert(text(name), attribute(value)).is_some() {
@@ -111,8 +107,8 @@ fn encode(
         blocks: exr::Blocks::ScanLines,
         line_order: exr::LineOrder::Increasing,
     };
-    let channels = exr::AnyChannels::sort(list.collect());
-    let layer = exr::Layer::new((width, height), described, encoding, channels);
+    let layer =
+        exr::Layer::new((width, height), described, encoding, exr::AnyChannels::sort(channels.into()));
     let mut image = exr::Image::from_layer(layer);
     if light == Light::Luminance {
         image.attributes.chromaticities = Some(BT709);
@@ -127,28 +123,28 @@ fn encode(
     Ok(bytes)
 }
 
-fn check_channels(width: usize, height: usize, channels: &[Channel<'_>]) -> Result<()> {
-    let cells = width.checked_mul(height).filter(|&n| n > 0 && n <= MOST_PIXELS).ok_or_else(|| {
-        Diagnostic::new(Kind::Range, format!("a map of {width} x {height} cells"), "1 to 2^28 cells")
-    })?;
+/// The channels, of so many values each.
+fn checked(channels: &[Channel<'_>], cells: usize) -> Result<Vec<exr::AnyChannel<exr::FlatSamples>>> {
     if channels.is_empty() {
         return Err(Diagnostic::new(Kind::Range, "no channel", "at least one channel"));
     }
+    let mut list = Vec::new();
     for (i, channel) in channels.iter().enumerate() {
-        let length = match channel.data {
-            Data::F32(values) => values.len(),
-            Data::U32(values) => values.len(),
+        let samples = match channel.data {
+            Data::F32(values) => exr::FlatSamples::F32(values.to_vec()),
+            Data::U32(values) => exr::FlatSamples::U32(values.to_vec()),
         };
-        if length != cells {
-            let found = format!("{length} values in channel \"{}\"", channel.name);
+        if samples.len() != cells {
+            let found = format!("{} values in channel \"{}\"", samples.len(), channel.name);
             return Err(Diagnostic::new(Kind::Range, found, format!("{cells} values")));
         }
         check_name("channel", channel.name)?;
         if channels[..i].iter().any(|other| other.name == channel.name) {
             return Err(bad_name("channel", channel.name, "a name used once"));
         }
+        list.push(exr::AnyChannel::new(text(channel.name), samples));
     }
-    Ok(())
+    Ok(list)
 }
 
 fn check_name(what: &str, name: &str) -> Result<()> {

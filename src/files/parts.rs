@@ -51,16 +51,13 @@ impl Parts {
     /// Looks for the part of this key.
     pub fn load(&self, kind: &str, key: &str) -> Found {
         let path = self.path(kind, key);
-        let length = match std::fs::metadata(&path) {
-            Ok(metadata) => metadata.len(),
-            Err(_) => return Found::Missing,
-        };
+        let Ok(metadata) = std::fs::metadata(&path) else { return Found::Missing };
         let damaged = |found: String| {
             let required = "a whole part of this study: it is made again";
             Found::Damaged(Diagnostic::new(Kind::Syntax, found, required).in_file(&path))
         };
-        if length > MOST_BYTES {
-            return damaged(format!("{length} bytes"));
+        if metadata.len() > MOST_BYTES {
+            return damaged(format!("{} bytes", metadata.len()));
         }
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,

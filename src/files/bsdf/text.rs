@@ -74,20 +74,7 @@ pub fn parse(bytes: &[u8], file: &str) -> Result<ScatterTable> {
         .map_err(|d| if d.line().is_none() { words.place(d) } else { d })
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Symmetry {
-    Rotational,
-    Plane,
-    None,
-    Orthotropic,
-}
-
-const SYMMETRIES: [(&str, Symmetry); 4] = [
-    ("rotational", Symmetry::Rotational),
-    ("plane", Symmetry::Plane),
-    ("none", Symmetry::None),
-    ("orthotropic", Symmetry::Orthotropic),
-];
+const SYMMETRIES: [&str; 4] = ["rotational", "plane", "none", "orthotropic"];
 
 const ANGLES: [&str; 4] = ["theta_i", "phi_i", "polar", "azimuth"];
 
@@ -95,7 +82,8 @@ const ANGLES: [&str; 4] = ["theta_i", "phi_i", "polar", "azimuth"];
 #[derive(Default)]
 struct Lists {
     frame: Option<Frame>,
-    symmetry: Option<Symmetry>,
+    /// One of [`SYMMETRIES`].
+    symmetry: Option<&'static str>,
     channels: Option<usize>,
     /// Those of [`ANGLES`], in degrees.
     angles: [Vec<f64>; 4],
@@ -109,7 +97,7 @@ impl Lists {
         } else if key.is("frame") {
             self.frame = Some(choice(words, &[("surface", Frame::Surface), ("specular", Frame::Specular)])?);
         } else if key.is("symmetry") {
-            self.symmetry = Some(choice(words, &SYMMETRIES)?);
+            self.symmetry = Some(choice(words, &SYMMETRIES.map(|word| (word, word)))?);
         } else if key.is("channels") {
             self.channels = Some(choice(words, &[("1", 1), ("3", 3)])?);
         } else {
@@ -138,19 +126,17 @@ impl Lists {
             }
         }
         let turn = match symmetry {
-            Symmetry::Rotational if azimuth.is_empty() => rotational(frame),
-            Symmetry::Rotational => {
+            "rotational" if azimuth.is_empty() => rotational(frame),
+            "rotational" => {
                 return Err(refuse("azimuth with rotational symmetry", "no list of azimuths"));
             }
             _ if azimuth.is_empty() => return Err(missing("azimuth")),
-            Symmetry::Plane => mirrored(azimuth)
+            "plane" => mirrored(azimuth)
                 .ok_or_else(|| refuse("azimuth with plane symmetry", "azimuths rising from 0 to 180"))?,
-            Symmetry::None | Symmetry::Orthotropic => {
-                closed(azimuth).ok_or_else(|| refuse("azimuth", FULL_TURN))?
-            }
+            _ => closed(azimuth).ok_or_else(|| refuse("azimuth", FULL_TURN))?,
         };
         let incidences = match symmetry {
-            Symmetry::Orthotropic => quarters(phi_i, &turn)
+            "orthotropic" => quarters(phi_i, &turn)
                 .ok_or_else(|| refuse("phi_i or azimuth with orthotropic symmetry", ORTHOTROPIC))?,
             _ if phi_i.is_empty() => vec![Incidence { phi_deg: 0.0, source: 0, mirrored: false }],
             _ => {

@@ -132,17 +132,15 @@ impl Header {
         let incidences = incidences.ok_or_else(|| missing(LISTS[1]))?;
         let azimuths = azimuths.ok_or_else(|| missing(LISTS[2]))?;
         let radials = radials.ok_or_else(|| missing(LISTS[3]))?;
-        let turn = match (azimuths.len(), plane) {
-            (1, _) => Some(rotational(Frame::Specular)),
-            (_, true) => mirrored(&azimuths),
-            (_, false) => closed(&azimuths),
+        const FULL_TURN: &str = "azimuths rising over at most a full turn";
+        let (turn, what, required) = match plane {
+            true => (mirrored(&azimuths), "a PlaneSymmetrical", "azimuths rising from 0 to 180"),
+            false => (closed(&azimuths), "an asymmetrical", FULL_TURN),
         };
-        let turn = turn.ok_or_else(|| match plane {
-            true => refuse("ScatterAzimuth of a PlaneSymmetrical table", "azimuths rising from 0 to 180"),
-            false => {
-                refuse("ScatterAzimuth of an asymmetrical table", "azimuths rising over at most a full turn")
-            }
-        })?;
+        let turn = match azimuths.len() {
+            1 => rotational(Frame::Specular),
+            _ => turn.ok_or_else(|| refuse(&format!("ScatterAzimuth of {what} table"), required))?,
+        };
         let samples = sample_turn(&rotations).ok_or_else(|| {
             refuse("SampleRotation", "one angle, or angles rising over at most a full turn")
         })?;

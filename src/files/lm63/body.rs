@@ -81,6 +81,15 @@ impl<'a> Reader<'a> {
         Ok(number)
     }
 
+    /// A number; one that does not fit gives a warning.
+    fn tolerated(&mut self, what: &str, fits: fn(f64) -> bool, required: &str, hint: &str) -> Result<f64> {
+        let number = self.tokens.number(what)?;
+        if !fits(number.value) {
+            self.doubt(&number, what, required, hint);
+        }
+        Ok(number.value)
+    }
+
     /// The block of `TILT=INCLUDE`, or a tilt file: geometry, number of pairs, angles, factors.
     pub fn tilt_table(&mut self) -> Result<TiltTable> {
         let geometry = self.code("lamp-to-luminaire geometry", &[1, 2, 3], "1, 2 or 3")?;
@@ -102,8 +111,12 @@ impl<'a> Reader<'a> {
 
     /// Everything from the number of lamps on: a luminaire without labels and tilt.
     pub fn luminaire(&mut self, revision: Revision) -> Result<Photometry> {
-        let lamps = self.lamps()?;
-        let lumens_per_lamp = self.lumens_per_lamp()?;
+        let whole = |x: f64| x >= 1.0 && x.fract() == 0.0;
+        let required = "a whole number, 1 or more";
+        let lamps = self.tolerated("number of lamps", whole, required, "it scales nothing")?;
+        let absolute = |x: f64| x >= 0.0 || x == -1.0;
+        let required = "0 or more, or -1 (absolute)";
+        let lumens_per_lamp = self.tolerated("lumens per lamp", absolute, required, "read as -1")?;
         let multiplier = self.factor("candela multiplier")?.value;
         let n_v = self.count("number of vertical angles")?;
         let n_h = self.count("number of horizontal angles")?;
@@ -122,7 +135,7 @@ impl<'a> Reader<'a> {
         self.require_table(n_v, n_h)?;
         let ballast_factor = self.factor("ballast factor")?.value;
         let field12 = self.field12(revision)?;
-        let input_watts = self.input_watts()?;
+        let input_watts = self.tolerated("input watts", |x| x >= 0.0, "0 or more", "read as 0")?.max(0.0);
         let vertical = self.tokens.numbers(n_v, "vertical angle")?;
         let horizontal = self.tokens.numbers(n_h, "horizontal angle")?;
         self.check_angles(revision, photometric_type, &vertical, &horizontal)?;
@@ -139,7 +152,7 @@ impl<'a> Reader<'a> {
             labels: Vec::new(),
             tilt: Tilt::None,
             lamps,
-            lumens_per_lamp,
+            lumens_per_lamp: (lumens_per_lamp >= 0.0).then_some(lumens_per_lamp),
             multiplier,
             ballast_factor,
             field12: field12.value,
@@ -162,22 +175,6 @@ impl<'a> Reader<'a> {
             self.warn(sides[0].offset, Kind::Unknown, &found, "a combination of this edition", &hint);
         }
         opening
-    }
-
-    fn lamps(&mut self) -> Result<f64> {
-        let number = self.tokens.number("number of lamps")?;
-        if !(number.value >= 1.0 && number.value.fract() == 0.0) {
-            self.doubt(&number, "number of lamps", "a whole number, 1 or more", "it scales nothing");
-        }
-        Ok(number.value)
-    }
-
-    fn lumens_per_lamp(&mut self) -> Result<Option<f64>> {
-        let number = self.tokens.number("lumens per lamp")?;
-        if number.value < 0.0 && number.value != -1.0 {
-            self.doubt(&number, "lumens per lamp", "0 or more, or -1 (absolute)", "read as -1");
-        }
-        Ok((number.value >= 0.0).then_some(number.value))
     }
 
     /// Whether the file holds what its counts promise, before memory is asked for. Three numbers short is the mark
@@ -218,14 +215,6 @@ impl<'a> Reader<'a> {
             self.doubt(&number, "field 12", "1 in this edition", hint);
         }
         Ok(number)
-    }
-
-    fn input_watts(&mut self) -> Result<f64> {
-        let number = self.tokens.number("input watts")?;
-        if number.value < 0.0 {
-            self.doubt(&number, "input watts", "0 or more", "read as 0");
-        }
-        Ok(number.value.max(0.0))
     }
 
     fn check_angles(

@@ -140,8 +140,7 @@ fn warn_about_rest(reader: &mut Reader) {
         };
         reader.warn(offset, Kind::Syntax, &found, required, "it is ignored");
     } else if !blank(behind_mark) {
-        let found = "text behind the end-of-file mark";
-        reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
+        reader.warn(offset, Kind::Syntax, "text behind the end-of-file mark", required, "it is ignored");
     }
 }
 

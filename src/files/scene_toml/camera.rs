@@ -43,7 +43,7 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<Camera> {
     spec.bandwidth = read_bandwidth(&mut table);
     spec.kernel = table.word("kernel", &KERNELS).unwrap_or_default();
     spec.background_cd_m2 = table.number_or_vector("background", &LUMINANCE).unwrap_or_default().to_array();
-    let exposure = if table.is_text("exposure") {
+    let exposure = if table.word_of("exposure").is_some() {
         table.word("exposure", &EXPOSURES)
     } else {
         table.number("exposure", &WHITE).map(Exposure::White)

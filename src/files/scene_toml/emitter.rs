@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::loader::Make;
+use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::DIRECTION;
 use super::part::EmitterPart;
@@ -24,10 +24,9 @@ const TYPES: [(&str, &str); 5] = [
 ];
 
 pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterPart> {
-    let place = table.place();
-    let unnamed = Placed { value: format!("emitter {}", index + 1), place };
-    let Placed { value: name, place: name_place } = table.text("name").unwrap_or(unnamed);
-    names.insert(table.document(), &name, &name, name_place, index);
+    let unnamed = Placed { value: format!("emitter {}", index + 1), place: table.place() };
+    let name = table.text("name").unwrap_or(unnamed);
+    names.insert(table.document(), &name, &name.value, index);
     let words = "\"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"";
     let (kind, what) =
         table.needed("type", words, |t, key| t.word(key, &TYPES.map(|meaning| (meaning.0, meaning))))?;
@@ -48,10 +47,10 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
             "panel" => read_panel(&mut table, light),
             _ => read_disc(&mut table, light),
         };
-        emitter.map(|emitter| -> Make<Emitter> { Box::new(move |_| Ok(emitter)) })
+        emitter.map(made)
     };
     table.finish();
-    Some(EmitterPart { name, colour: colour?, make: make?, place })
+    Some(EmitterPart { name: name.value, colour: colour?, make: make? })
 }
 
 fn read_photometric(

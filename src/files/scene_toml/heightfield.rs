@@ -108,8 +108,8 @@ fn read_noise(table: &mut Table<'_, '_>) -> Option<Noise> {
     let required = format!("a list of 1 to {MOST_OCTAVES} octaves {{ amplitude, wavelength }}");
     let octaves =
         noise.needed("octaves", &required, |t, key| t.tables(key, "an octave", MOST_OCTAVES, &required));
-    let octaves: Option<Vec<_>> = octaves.map(|tables| tables.into_iter().map(read_octave).collect());
-    let octaves: Option<Vec<Octave>> = octaves.and_then(|all| all.into_iter().collect());
+    let octaves = octaves.map(|tables| tables.into_iter().map(read_octave).collect::<Vec<_>>());
+    let octaves = octaves.and_then(|all| all.into_iter().collect());
     let made = amplitude
         .zip(octaves)
         .and_then(|(amplitude, octaves)| noise.accept(Noise::new(seed.unwrap_or(0), octaves, amplitude)));

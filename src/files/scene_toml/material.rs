@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::loader::Make;
+use super::loader::{Make, made};
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::MaterialPart;
+use super::suggest;
 use super::table::Table;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;
@@ -25,8 +26,9 @@ const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back
 const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
 
 pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
-    let place = table.place();
-    if table.is_unavailable("type", &["conductor"], &TYPES) {
+    if table.word_of("type") == Some("conductor") {
+        let required = format!("{}; conductor is not available yet", suggest::list(&TYPES));
+        table.error("type", Kind::Unavailable, &required);
         return None;
     }
     let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
@@ -43,12 +45,7 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
         _ => read_tabulated(&mut table, &mut reference),
     };
     table.finish();
-    Some(MaterialPart { make: make?, reference, place })
-}
-
-/// A material that needs no file.
-fn made(material: Material) -> Make<Material> {
-    Box::new(move |_| Ok(material))
+    Some(MaterialPart { make: make?, reference })
 }
 
 fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {

@@ -137,26 +137,26 @@ impl SceneFile {
             Some(_) => e,
             None => e.placed(Some(place)).in_file(&name),
         };
-        for part in parts.emitters.into_iter().flatten() {
+        for (part, place) in parts.emitters.into_iter().flatten() {
             match (part.make)(&mut loader) {
-                Ok(emitter) => _ = scene.at(part.place).coloured_emitter(part.name, emitter, part.colour),
-                Err(e) => errors.push(placed(part.place, e)),
+                Ok(emitter) => _ = scene.at(place).coloured_emitter(part.name, emitter, part.colour),
+                Err(e) => errors.push(placed(place, e)),
             }
         }
         let mut materials = Vec::new();
-        for part in parts.materials.into_iter().flatten() {
-            let made = (part.make)(&mut loader).map_err(|e| errors.push(placed(part.place, e)));
+        for (part, place) in parts.materials.into_iter().flatten() {
+            let made = (part.make)(&mut loader).map_err(|e| errors.push(placed(place, e)));
             materials.push(made.ok().map(|material| (material, part.reference)));
         }
-        for part in parts.surfaces.into_iter().flatten() {
+        for (part, place) in parts.surfaces.into_iter().flatten() {
             let made = (part.shape)(&mut loader).and_then(|shape| {
                 // A material in error is reported already.
                 let Some((material, reference)) = &materials[part.material] else { return Ok(()) };
                 let material = material::laid_on(material, *reference, &shape)?;
-                scene.at(part.place).surface(part.name, shape, material);
+                scene.at(place).surface(part.name, shape, material);
                 Ok(())
             });
-            errors.extend(made.err().map(|e| placed(part.place, e)));
+            errors.extend(made.err().map(|e| placed(place, e)));
         }
         if !errors.is_empty() {
             return Err(errors);

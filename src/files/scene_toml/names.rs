@@ -23,29 +23,23 @@ impl Names {
     }
 
     /// Add a name, compared as `key`; a second use is an error at its place that says where the first one is.
-    pub(crate) fn insert(
-        &mut self,
-        document: &Document<'_>,
-        name: &str,
-        key: &str,
-        place: Place,
-        index: usize,
-    ) {
+    pub(crate) fn insert(&mut self, document: &Document<'_>, name: &Placed<String>, key: &str, index: usize) {
+        let Placed { value: name, place } = name;
         let what = self.what;
         if name.is_empty() || name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
             let found = format!("the {what} name `{}`", shown(name));
             let required =
                 format!("a name of 1 to {LONGEST_NAME} characters, none of them a control character");
-            document.error_at(place, Kind::Range, found, required);
+            document.error_at(*place, Kind::Range, found, required);
         }
         if let Some((first, _)) = self.known.get(key) {
             let found =
                 format!("the {what} name `{}` a second time (first in line {})", shown(name), first.line);
             let required = format!("a name of its own for every {what}");
-            document.error_at(place, Kind::Range, found, required);
+            document.error_at(*place, Kind::Range, found, required);
             return;
         }
-        self.known.insert(key.to_string(), (place, index));
+        self.known.insert(key.to_string(), (*place, index));
     }
 
     /// Names, places and indices in the order of the file.

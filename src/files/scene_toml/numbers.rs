@@ -37,15 +37,6 @@ impl<'t> Table<'t, '_> {
     /// `N` numbers in this interval, in a list.
     pub fn numbers<const N: usize>(&mut self, key: &'static str, interval: &Interval) -> Option<[f64; N]> {
         let value = self.take(key)?;
-        self.numbers_in(key, value, interval)
-    }
-
-    fn numbers_in<const N: usize>(
-        &self,
-        key: &str,
-        value: Value<'t>,
-        interval: &Interval,
-    ) -> Option<[f64; N]> {
         let required = format!("a list of {N} numbers, each {}", interval.words);
         self.each_of(key, value, &required, |label, item| self.number_in(label, item, interval))
     }
@@ -78,13 +69,13 @@ impl<'t> Table<'t, '_> {
 
     /// A number for all three components, or a vector.
     pub fn number_or_vector(&mut self, key: &'static str, interval: &Interval) -> Option<DVec3> {
-        let value = self.take(key)?;
-        if value.get_ref().is_array() {
-            return self.numbers_in::<3>(key, value, interval).map(DVec3::from_array);
+        if self.is_list(key) {
+            return self.vector(key, interval);
         }
+        let value = self.take(key)?;
         if number_of(value.get_ref()).is_none() {
             let required = format!("{}, or a list of 3 such numbers", interval.words);
-            return self.wrong(key, value, Kind::Syntax, required);
+            return self.wrong(key, value, Kind::Syntax, &required);
         }
         self.number_in(key, value, interval).map(DVec3::splat)
     }

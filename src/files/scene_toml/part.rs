@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::loader::Make;
 use crate::emitter::{Colour, Emitter};
-use crate::error::Place;
 use crate::geometry::Shape;
 use crate::surface::Material;
 
@@ -12,14 +11,12 @@ pub(super) struct EmitterPart {
     pub name: String,
     pub colour: Colour,
     pub make: Make<Emitter>,
-    pub place: Place,
 }
 
 pub(super) struct MaterialPart {
     pub make: Make<Material>,
     /// The direction from which a table's azimuths are counted, where the scene gives one.
     pub reference: Option<DVec3>,
-    pub place: Place,
 }
 
 pub(super) struct SurfacePart {
@@ -29,5 +26,4 @@ pub(super) struct SurfacePart {
     pub shape: Make<Shape>,
     /// The word for a shape on which a receiver has a value a face.
     pub of_faces: Option<&'static str>,
-    pub place: Place,
 }

@@ -31,9 +31,9 @@ pub struct RunDefaults {
 
 /// The parts of a scene; `None` stands for one with an error, so that indices stay those of the file.
 pub(super) struct Parts {
-    pub emitters: Vec<Option<EmitterPart>>,
-    pub materials: Vec<Option<MaterialPart>>,
-    pub surfaces: Vec<Option<SurfacePart>>,
+    pub emitters: Vec<Option<(EmitterPart, Place)>>,
+    pub materials: Vec<Option<(MaterialPart, Place)>>,
+    pub surfaces: Vec<Option<(SurfacePart, Place)>>,
     pub receivers: Vec<Option<(ReceiverSpec, Place)>>,
     pub camera: Option<(Camera, Place)>,
     pub compared_reflections: Option<u32>,
@@ -53,37 +53,30 @@ impl Parts {
             document.error_at(start, Kind::Missing, found, "at least one [[emitter]]");
         }
         let mut names = Names::new("emitter");
-        let emitters = emitter_tables
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| emitter::read(table, index, &mut names))
-            .collect();
+        let emitters = read_each(emitter_tables, |table, index| emitter::read(table, index, &mut names));
 
         let material_tables = root
             .table("material", "the materials")
             .map(|t| t.named_tables("a [material.NAME]", MOST_PARTS, "a table [material.NAME]"))
             .unwrap_or_default();
         let mut material_names = Names::new("material");
-        let mut materials = Vec::new();
-        for (index, (name, table)) in material_tables.into_iter().enumerate() {
-            material_names.insert(document, &name, &name, table.place(), index);
-            materials.push(material::read(table));
-        }
+        let (names, tables): (Vec<_>, Vec<_>) = material_tables.into_iter().unzip();
+        let materials = read_each(tables, |table, index| {
+            let name = Placed { value: names[index].clone(), place: table.place() };
+            material_names.insert(document, &name, &name.value, index);
+            material::read(table)
+        });
 
         let mut surface_names = Names::new("surface");
         let mut cells = 0;
-        let mut surfaces = Vec::new();
-        for (index, table) in parts_named(&mut root, "surface").into_iter().enumerate() {
-            surfaces.push(surface::read(table, index, &mut surface_names, &material_names, &mut cells));
-        }
+        let surfaces = read_each(parts_named(&mut root, "surface"), |table, index| {
+            surface::read(table, index, &mut surface_names, &material_names, &mut cells)
+        });
 
         let mut names = Names::new("receiver");
-        let mut receivers = Vec::new();
-        for (index, table) in parts_named(&mut root, "receiver").into_iter().enumerate() {
-            let place = table.place();
-            let receiver = receiver::read(table, index, &mut names, &surface_names, &surfaces);
-            receivers.push(receiver.map(|receiver| (receiver, place)));
-        }
+        let receivers = read_each(parts_named(&mut root, "receiver"), |table, index| {
+            receiver::read(table, index, &mut names, &surface_names, &surfaces)
+        });
         if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
             let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
@@ -102,6 +95,18 @@ impl Parts {
     }
 }
 
+/// What `read` makes of each table and its index, with the place of its header.
+fn read_each<'t, 'd, T>(
+    tables: Vec<Table<'t, 'd>>,
+    mut read: impl FnMut(Table<'t, 'd>, usize) -> Option<T>,
+) -> Vec<Option<(T, Place)>> {
+    let read = |(index, table): (usize, Table<'t, 'd>)| {
+        let place = table.place();
+        Some((read(table, index)?, place))
+    };
+    tables.into_iter().enumerate().map(read).collect()
+}
+
 /// The tables `[[key]]` of the scene.
 fn parts_named<'t, 'd>(root: &mut Table<'t, 'd>, key: &'static str) -> Vec<Table<'t, 'd>> {
     let what = format!("an [[{key}]]").replace("an [[s", "a [[s").replace("an [[r", "a [[r");
@@ -109,8 +114,8 @@ fn parts_named<'t, 'd>(root: &mut Table<'t, 'd>, key: &'static str) -> Vec<Table
     root.tables(key, &what, MOST_PARTS, &required).unwrap_or_default()
 }
 
-fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<SurfacePart>]) {
-    let used: Vec<usize> = surfaces.iter().flatten().map(|s| s.material).collect();
+fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<(SurfacePart, Place)>]) {
+    let used: Vec<usize> = surfaces.iter().flatten().map(|(s, _)| s.material).collect();
     for (name, place, index) in names.in_order() {
         if !used.contains(&index) {
             let found = format!("the material `{name}`, which no surface has");

@@ -3,7 +3,7 @@
 use super::names::Names;
 use super::part::SurfacePart;
 use super::table::{Placed, Table};
-use crate::error::Kind;
+use crate::error::{Kind, Place};
 use crate::scene::receiver::{CELLS_REQUIRED, MOST_CELLS, ReceiverEvents, ReceiverSide, ReceiverSpec};
 
 const SIDES: [(&str, ReceiverSide); 3] =
@@ -20,7 +20,7 @@ pub(super) fn read(
     index: usize,
     names: &mut Names,
     surface_names: &Names,
-    surfaces: &[Option<SurfacePart>],
+    surfaces: &[Option<(SurfacePart, Place)>],
 ) -> Option<ReceiverSpec> {
     let given = table.text("name");
     let surface = surface_names.refer(&mut table, "surface");
@@ -33,13 +33,13 @@ pub(super) fn read(
     };
     if let Some(name) = &name {
         // Cases are not told apart: some file systems don't, and the names become file names.
-        names.insert(table.document(), &name.value, &name.value.to_lowercase(), name.place, index);
+        names.insert(table.document(), name, &name.value.to_lowercase(), index);
     }
     let cells = table.cells("cells", MOST_CELLS, CELLS_REQUIRED);
     let part = surface.as_ref().and_then(|(_, index)| surfaces.get(*index)?.as_ref());
-    let of_faces = part.and_then(|part| part.of_faces);
+    let of_faces = part.and_then(|(part, _)| part.of_faces);
     if let Some(word) = of_faces.filter(|_| table.place_of("cells").is_some()) {
-        table.error("cells", Kind::Range, format!("no cells: a {word} has one value a triangle"));
+        table.error("cells", Kind::Range, &format!("no cells: a {word} has one value a triangle"));
     }
     let side = table.word("side", &SIDES).unwrap_or_default();
     let events = table.word("events", &EVENTS).unwrap_or_default();

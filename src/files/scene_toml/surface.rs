@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::heightfield;
-use super::loader::Make;
+use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::SurfacePart;
@@ -25,10 +25,9 @@ pub(super) fn read(
     materials: &Names,
     cells: &mut u64,
 ) -> Option<SurfacePart> {
-    let place = table.place();
     let name = table.needed("name", "a name of its own, in quotes", Table::text);
     if let Some(name) = &name {
-        names.insert(table.document(), &name.value, &name.value, name.place, index);
+        names.insert(table.document(), name, &name.value, index);
     }
     let material = materials.refer(&mut table, "material");
     let transform = read_transform(&mut table);
@@ -49,13 +48,12 @@ pub(super) fn read(
                 "sphere" => read_sphere(&mut table).map(Shape::Sphere),
                 _ => read_paraboloid(&mut table).map(Shape::Paraboloid),
             };
-            let moved = shape.zip(transform).and_then(|(shape, t)| table.accept(moved(shape, &t)));
-            moved.map(|shape| -> Make<Shape> { Box::new(move |_| Ok(shape)) })
+            shape.zip(transform).and_then(|(shape, t)| table.accept(moved(shape, &t))).map(made)
         }
     };
     table.finish();
     let of_faces = ["mesh", "box", "heightfield"].contains(&kind).then_some(kind);
-    Some(SurfacePart { name: name?.value, material: material?.1, shape: shape?, of_faces, place })
+    Some(SurfacePart { name: name?.value, material: material?.1, shape: shape?, of_faces })
 }
 
 /// A shape that is not moved keeps its bits: no normal is normalised again.
