@@ -32,7 +32,7 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// For a study of so many photons, its arguments and its folder being in order: makes the folder, and catches Ctrl-C.
+    /// Makes the folder of a study of so many photons, and catches Ctrl-C.
     ///
     /// # Errors
     /// A folder that cannot be made.
@@ -55,7 +55,7 @@ impl Kept {
         }
     }
 
-    /// A part in JSON, of so many photons: the one that is there, else one that is made, and kept if it is whole.
+    /// A part in JSON, of so many photons: the one that is there, else one that is made, and kept; `None` where it was not finished.
     ///
     /// # Errors
     /// Those of making it; a file that cannot be written.

@@ -58,7 +58,7 @@ impl<'a> Words<'a> {
         Self { text: &text[..bytes.end], byte: bytes.start }
     }
 
-    /// Moves to the next character of this sort, or the end; gives what is passed.
+    /// Moves to the next character that `stop` names, or to the end; gives what is passed.
     fn pass(&mut self, stop: impl Fn(char) -> bool) -> &'a str {
         let rest = &self.text[self.byte..];
         let passed = &rest[..rest.find(stop).unwrap_or(rest.len())];
@@ -66,7 +66,7 @@ impl<'a> Words<'a> {
         passed
     }
 
-    /// The next word before what `stop` says.
+    /// The next word; none, if a character that `stop` names comes first.
     fn take(&mut self, stop: impl Fn(char) -> bool) -> Option<Word<'a>> {
         self.pass(|c| !separates(c) || stop(c));
         while self.text[self.byte..].starts_with('#') {
