@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::plot::page::curve_angles;
 use crate::scattering::value::value;
 use crate::scattering::{Frame, Lobe, Quantity};
 use crate::units::LUMINANCE_OF_RGB;
@@ -9,8 +10,8 @@ use crate::units::LUMINANCE_OF_RGB;
 /// Incidences that are looked for, degrees; the table's nearest are drawn.
 pub const WANTED_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 
-/// Step of a curve, degrees; the table's own angles are added.
-const STEP_DEG: f64 = 0.5;
+/// Points of a curve in a degree; the table's own angles are added.
+const PER_DEGREE: i32 = 2;
 
 /// Scattered intensity in the plane of incidence, for light from one direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,12 +79,7 @@ fn in_plane(lobe: &Lobe, phi_i: usize, theta_i: usize) -> Vec<(f64, f64)> {
         Frame::Surface => 0.0,
         Frame::Specular => theta_i_deg,
     };
-    let steps = (180.0 / STEP_DEG) as i32;
-    let mut angles: Vec<f64> = (0..=steps).map(|i| f64::from(i) * STEP_DEG - 90.0).collect();
-    angles
-        .extend(lobe.polar_deg.iter().flat_map(|p| [pole_deg + p, pole_deg - p]).filter(|a| a.abs() <= 90.0));
-    angles.sort_by(f64::total_cmp);
-    angles.dedup();
+    let own = lobe.polar_deg.iter().flat_map(|p| [pole_deg + p, pole_deg - p]);
     let weights: &[f64] = if lobe.channels == 3 { &LUMINANCE_OF_RGB } else { &[1.0] };
     let intensity = |angle_deg: f64| {
         let angle = angle_deg.to_radians();
@@ -92,5 +88,5 @@ fn in_plane(lobe: &Lobe, phi_i: usize, theta_i: usize) -> Vec<(f64, f64)> {
         let f = weights.iter().enumerate().map(|(channel, weight)| weight * value(lobe, channel, wi, wo));
         f.sum::<f64>() * cosine
     };
-    angles.into_iter().map(|a| (a, intensity(a))).collect()
+    curve_angles(90, PER_DEGREE, own).into_iter().map(|a| (a, intensity(a))).collect()
 }
