@@ -8,7 +8,7 @@
 //! Inside a cell the candela is linear in either angle, so two nodes along each determine it. All nodes lie
 //! inside cells, where rounding cannot put them into another one.
 
-use super::quadrature::{Gauss, TWO_POINT, at_nodes};
+use super::quadrature::{GAUSS, TWO_POINT, at_nodes};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::photometry::{PhotometricType, Web};
 
@@ -18,7 +18,6 @@ pub struct Density<'w> {
     web: &'w Web,
     polar_rad: Vec<f64>,
     azimuth_rad: Vec<f64>,
-    rule: Gauss,
     /// Integral over phi from the first azimuth to each, cd rad, at the two nodes of theta in each row:
     /// `[row * azimuths + azimuth]`.
     along_phi: Vec<[f64; 2]>,
@@ -39,9 +38,8 @@ impl<'w> Density<'w> {
     pub fn new(web: &'w Web) -> Result<Self> {
         let grid = web.full_grid();
         let (polar_rad, azimuth_rad) = (grid.polar_rad, grid.azimuth_rad);
-        let rule = Gauss::new();
         let (along_phi, mass_lm, below_lm) = (Vec::new(), Vec::new(), vec![0.0]);
-        let mut density = Self { web, polar_rad, azimuth_rad, rule, along_phi, mass_lm, below_lm };
+        let mut density = Self { web, polar_rad, azimuth_rad, along_phi, mass_lm, below_lm };
         let mut total_lm = 0.0;
         for row in 1..density.polar_rad.len() {
             total_lm += density.add_row(row - 1);
@@ -79,7 +77,7 @@ impl<'w> Density<'w> {
     fn sine_weights(&self, row: usize, s: f64) -> [f64; 2] {
         let (theta, width) = (self.polar_rad[row], self.row_width(row));
         let mut weights = [0.0; 2];
-        for (x, weight) in self.rule.points() {
+        for (x, weight) in GAUSS {
             let sine = weight * libm::sin(theta + x * s);
             let nodes = at_nodes(x * s / width);
             weights = [weights[0] + sine * nodes[0], weights[1] + sine * nodes[1]];

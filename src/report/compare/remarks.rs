@@ -1,7 +1,7 @@
 //! What is said beside the numbers, alike on the terminal and in the file: the settings, warnings, footnotes.
 
 use crate::lab::study::fit::Uncertainty;
-use crate::lab::study::results::{BASELINE, Study};
+use crate::lab::study::results::{BASELINE, ReferenceUsed, Study};
 use crate::lab::study::table::{REFERENCE_MARGIN, Table};
 use crate::report::numbers::{grouped, list, three_digits};
 
@@ -17,39 +17,30 @@ pub fn cells(grid: u32) -> String {
 
 /// What the errors are measured against.
 pub fn reference(study: &Study) -> String {
-    let reference = &study.reference;
+    let ReferenceUsed { photons, replicates, sequence, emission_map, seed, factor, .. } = &study.reference;
+    let (photons, factor) = (grouped(*photons), three_digits(*factor));
     format!(
-        "{} photons, {} x the largest N, in {} replicates; sequence {}, {}, seed {}",
-        grouped(reference.photons),
-        three_digits(reference.factor),
-        reference.replicates,
-        reference.sequence,
-        reference.emission_map,
-        reference.seed
+        "{photons} photons, {factor} x the largest N, in {replicates} replicates; sequence {sequence}, {emission_map}, \
+         seed {seed}"
     )
 }
 
 /// The reference's own nRMS on every grid.
 pub fn own_errors(study: &Study) -> String {
-    let own: Vec<String> = study
-        .grids
-        .iter()
-        .enumerate()
-        .map(|(g, grid)| {
-            let own = study.reference.own_nrms.get(g).copied().filter(|own| own.is_finite());
-            let own = own.map_or("unknown".to_owned(), |own| format!("{} %", three_digits(100.0 * own)));
-            format!("{own} on {} cells", cells(*grid))
-        })
-        .collect();
-    list(&own)
+    let on = |(g, grid): (usize, &u32)| {
+        let own = study.reference.own_nrms.get(g).copied().filter(|own| own.is_finite());
+        let own = own.map_or("unknown".to_owned(), |own| format!("{} %", three_digits(100.0 * own)));
+        format!("{own} on {} cells", cells(*grid))
+    };
+    list(study.grids.iter().enumerate().map(on))
 }
 
 /// The seeds, in words.
 pub fn seeds(study: &Study) -> String {
-    let seeds: Vec<String> = study.seeds.iter().map(u64::to_string).collect();
-    match seeds.as_slice() {
-        [one] => format!("one seed ({one})"),
-        several => format!("{} seeds ({})", several.len(), list(several)),
+    let seeds = list(study.seeds.iter().map(u64::to_string));
+    match study.seeds.len() {
+        1 => format!("one seed ({seeds})"),
+        several => format!("{several} seeds ({seeds})"),
     }
 }
 
@@ -73,9 +64,8 @@ pub fn warnings(study: &Study, table: &Table) -> Vec<String> {
     }
     let ladder = table.ladder();
     if ladder.len() == 1 {
-        warnings.push(
-            "one number of photons gives no rate, no ratio at equal time and no time to 1 %".to_owned(),
-        );
+        let without = "no rate, no ratio at equal time and no time to 1 %";
+        warnings.push(format!("one number of photons gives {without}"));
     }
     if !ladder.is_empty() && !ladder.contains(&study.asked_photons) {
         let asked = grouped(study.asked_photons);
@@ -95,19 +85,14 @@ fn limits(study: &Study, table: &Table) -> Vec<String> {
     let mut warnings = Vec::new();
     for (v, variant) in study.variants.iter().enumerate() {
         for (g, grid) in study.grids.iter().enumerate() {
-            let at: Vec<String> = table
-                .rows
-                .iter()
-                .filter(|r| (r.variant, r.grid) == (v, g) && r.limited_by_reference)
-                .map(|r| grouped(r.photons))
-                .collect();
+            let limited =
+                table.rows.iter().filter(|r| (r.variant, r.grid) == (v, g) && r.limited_by_reference);
+            let at = list(limited.map(|r| grouped(r.photons)));
             if !at.is_empty() {
+                let (name, cells) = (&variant.name, cells(*grid));
                 warnings.push(format!(
-                    "{} on {} cells: the error at N = {} is less than {REFERENCE_MARGIN} x the reference's own and \
-                     limited by it, and so is what follows from it",
-                    variant.name,
-                    cells(*grid),
-                    list(&at)
+                    "{name} on {cells} cells: the error at N = {at} is less than {REFERENCE_MARGIN} x the reference's \
+                     own and limited by it, and so is what follows from it"
                 ));
             }
         }

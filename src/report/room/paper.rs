@@ -24,13 +24,13 @@ const PAPER_PAIRS: [[u64; 2]; 6] = [
 ];
 
 /// The paper's table 6: pairs of the first four of [`SEQUENCES`] at 10^7 photons.
-const PAPER_BETWEEN: [(usize, usize, f64); 6] = [
-    (0, 1, 0.000_100_943),
-    (0, 2, 0.000_103_805),
-    (0, 3, 0.000_110_742),
-    (1, 2, 0.000_035_803_7),
-    (1, 3, 0.000_029_486_6),
-    (2, 3, 0.000_030_054_9),
+const PAPER_BETWEEN: [([usize; 2], f64); 6] = [
+    ([0, 1], 0.000_100_943),
+    ([0, 2], 0.000_103_805),
+    ([0, 3], 0.000_110_742),
+    ([1, 2], 0.000_035_803_7),
+    ([1, 3], 0.000_029_486_6),
+    ([2, 3], 0.000_030_054_9),
 ];
 
 const PAPER_MASTER: u64 = 10_000_000;
@@ -55,11 +55,17 @@ pub fn paper(sequence: usize, pair: [u64; 2]) -> Option<f64> {
 
 /// Three digits of a small number, with the spread where there is one.
 pub fn value(value: Value) -> String {
-    let scientific = |x: f64| format!("{x:.2e}");
-    match value.spread {
-        Some(spread) => format!("{} +- {}", scientific(value.mean), scientific(spread)),
-        None => scientific(value.mean),
-    }
+    with_spread(value, |x| format!("{x:.2e}"))
+}
+
+/// A ratio with the spread where there is one.
+pub fn ratio(value: Value) -> String {
+    with_spread(value, |x| format!("{x:.2}"))
+}
+
+fn with_spread(value: Value, written: impl Fn(f64) -> String) -> String {
+    let spread = value.spread.map_or(String::new(), |s| format!(" +- {}", written(s)));
+    written(value.mean) + &spread
 }
 
 /// The two largest numbers of photons.
@@ -68,23 +74,23 @@ pub fn last_pair(study: &RoomStudy) -> [u64; 2] {
     [ladder[ladder.len() - 2], ladder[ladder.len() - 1]]
 }
 
-/// A ratio with the spread where there is one.
-pub fn ratio(value: Value) -> String {
-    match value.spread {
-        Some(spread) => format!("{:.2} +- {spread:.2}", value.mean),
-        None => format!("{:.2}", value.mean),
-    }
-}
-
 /// The paper's ratio of the random sequence to another.
 pub fn paper_ratio(sequence: usize, pair: [u64; 2]) -> Option<String> {
     Some(format!("{:.1}", paper(0, pair)? / paper(sequence, pair)?))
 }
 
 /// The paper's deviation of two sequences.
-pub fn paper_between(first: usize, second: usize, photons: u64) -> Option<f64> {
-    let same = |e: &&(usize, usize, f64)| (e.0, e.1) == (first, second) && photons == PAPER_MASTER;
-    PAPER_BETWEEN.iter().find(same).map(|e| e.2)
+pub fn paper_between(sequences: [usize; 2], photons: u64) -> Option<f64> {
+    let same = |e: &&([usize; 2], f64)| e.0 == sequences && photons == PAPER_MASTER;
+    PAPER_BETWEEN.iter().find(same).map(|e| e.1)
+}
+
+/// Two sequences, their deviation with the most photons, and the paper's.
+pub fn between(study: &RoomStudy) -> impl Iterator<Item = [String; 4]> {
+    study.between().into_iter().map(|b| {
+        let [first, second] = b.sequences.map(|s| title(s).to_owned());
+        [first, second, value(b.value), printed(paper_between(b.sequences, b.photons[1]))]
+    })
 }
 
 /// A number of the paper, three digits.
