@@ -55,12 +55,9 @@ fn title(photometry: &Photometry) -> String {
 }
 
 fn footer(s: &Summary) -> Vec<String> {
+    let flux = format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela));
     let angle = |name: &str, degrees: Option<f64>| degrees.map(|d| format!("{name} {}\u{b0}", digits(d)));
     let angles = [angle("beam angle", s.beam_angle_deg), angle("field angle", s.field_angle_deg)];
-    let mut lines = vec![format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela))];
-    let angles: Vec<String> = angles.into_iter().flatten().collect();
-    if !angles.is_empty() {
-        lines.push(angles.join(", "));
-    }
-    lines
+    let angles = angles.into_iter().flatten().reduce(|beam, field| format!("{beam}, {field}"));
+    [flux].into_iter().chain(angles).collect()
 }

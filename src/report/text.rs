@@ -1,8 +1,8 @@
 //! The printed summary of a run, for a lighting engineer.
 
-use std::fmt::Write;
+use std::fmt::{Result, Write};
 
-use crate::run::{Outcome, StoppedBy};
+use crate::run::{Estimate, Outcome, StoppedBy};
 use crate::scene::Scene;
 
 use super::numbers::{digits, grouped, rounded, with_error, written};
@@ -65,12 +65,7 @@ pub fn summary(
     })
 }
 
-fn write_receiver(
-    out: &mut String,
-    name: &str,
-    s: &ReceiverStatistics,
-    files: &[String],
-) -> std::fmt::Result {
+fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &[String]) -> Result {
     writeln!(out, "\nreceiver \"{name}\": {} cells, {} m2", grouped(s.cells as u64), digits(s.area_m2))?;
     writeln!(out, "  flux         {}", with_error(s.flux_lm, s.flux_standard_error_lm, "lm"))?;
     let mean_error = s.flux_standard_error_lm.map(|e| e / s.area_m2);
@@ -90,13 +85,13 @@ fn write_receiver(
     Ok(())
 }
 
-fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> std::fmt::Result {
+fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> Result {
     let surfaces = scene.geometry.surfaces();
     let emitted = scene.emitters.flux_lm();
     let width = surfaces.iter().map(|s| s.name.chars().count() + 14).max().unwrap_or(0).max(22);
     writeln!(out, "\nwhere the light went")?;
     writeln!(out, "  {:<width$} {:>12} lm", "emitted", digits(emitted))?;
-    let mut line = |label: String, e: crate::run::Estimate| {
+    let mut line = |label: String, e: Estimate| {
         let share = 100.0 * e.value / emitted;
         let error = e.standard_error.map_or(String::new(), |se| format!(" +- {}", rounded(se, 2)));
         writeln!(out, "  {label:<width$} {:>12} lm{error}  ({share:.2} %)", digits(e.value))

@@ -105,14 +105,14 @@ impl BsdfPlot {
         let most = if most > f64::MIN_POSITIVE / f64::EPSILON { most } else { 1.0 };
         let full = self.slices.iter().any(|s| s.quantity == Quantity::Transmission);
         let centre = [0.5 * WIDTH as f64, MARGIN + 60.0 + RADIUS];
-        if most > LINEAR_RANGE * least {
+        let (rings, scale) = if most > LINEAR_RANGE * least {
             let outer = libm::exp10(libm::ceil(libm::log10(most)));
             let ring = |below: f64| outer * libm::exp10(-below);
             let rings = (0..DECADES as i32).rev().map(|i| ring(f64::from(i)));
-            let rings = rings.map(|value| (value, digits(value))).collect();
-            return Disc { centre, scale: Scale::Logarithmic(outer), rings, full };
-        }
-        let (rings, scale) = round_rings(most);
+            (rings.map(|value| (value, digits(value))).collect(), Scale::Logarithmic(outer))
+        } else {
+            round_rings(most)
+        };
         Disc { centre, scale, rings, full }
     }
 }

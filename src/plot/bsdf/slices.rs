@@ -40,16 +40,13 @@ pub fn slices(lobe: &Lobe) -> Vec<Slice> {
     let azimuths: &[f64] = if lobe.is_isotropic() { &[0.0] } else { &[0.0, 90.0] };
     let first = lobe.phi_i_deg[0];
     let phis = nearest(&lobe.phi_i_deg, &azimuths.iter().map(|a| a + first).collect::<Vec<_>>());
-    let mut slices = Vec::new();
-    for phi in &phis {
-        slices.extend(thetas.iter().map(|theta| Slice {
-            theta_i_deg: lobe.theta_i_deg[*theta],
-            phi_i_deg: (!lobe.is_isotropic()).then(|| lobe.phi_i_deg[*phi]),
-            quantity: lobe.quantity,
-            points: in_plane(lobe, *phi, *theta),
-        }));
-    }
-    slices
+    let slice = |phi: usize, theta: usize| Slice {
+        theta_i_deg: lobe.theta_i_deg[theta],
+        phi_i_deg: (!lobe.is_isotropic()).then(|| lobe.phi_i_deg[phi]),
+        quantity: lobe.quantity,
+        points: in_plane(lobe, phi, theta),
+    };
+    phis.iter().flat_map(|phi| thetas.iter().map(move |theta| slice(*phi, *theta))).collect()
 }
 
 /// Indices of the angles nearest to the wanted ones, each once, rising.

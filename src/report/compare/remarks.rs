@@ -52,32 +52,25 @@ pub fn shown_photons(study: &Study, table: &Table) -> Option<u64> {
 
 /// Everything to be warned of: first what the numbers say about themselves, then what the study was told.
 pub fn warnings(study: &Study, table: &Table) -> Vec<String> {
-    let mut warnings = limits(study, table);
-    if study.reference.factor < LEAST_FACTOR {
-        warnings.push(format!(
-            "the reference has {} x the photons of the largest N, less than {LEAST_FACTOR}",
-            three_digits(study.reference.factor)
-        ));
-    }
-    if study.baseline().is_none() {
-        warnings.push(format!("without the variant {BASELINE} there are no ratios"));
-    }
-    let ladder = table.ladder();
-    if ladder.len() == 1 {
-        let without = "no rate, no ratio at equal time and no time to 1 %";
-        warnings.push(format!("one number of photons gives {without}"));
-    }
-    if !ladder.is_empty() && !ladder.contains(&study.asked_photons) {
-        let asked = grouped(study.asked_photons);
-        warnings.push(format!(
-            "no run with the {asked} photons asked for is finished; tables show the largest N"
-        ));
-    }
-    if study.seeds.len() == 1 {
-        warnings.push("one seed says nothing about the spread of an error".to_owned());
-    }
-    warnings.extend(study.warnings.iter().cloned());
-    warnings
+    let (factor, ladder, asked) = (study.reference.factor, table.ladder(), study.asked_photons);
+    let lacks_asked = !ladder.is_empty() && !ladder.contains(&asked);
+    let of_study = [
+        (factor < LEAST_FACTOR).then(|| {
+            let factor = three_digits(factor);
+            format!("the reference has {factor} x the photons of the largest N, less than {LEAST_FACTOR}")
+        }),
+        study.baseline().is_none().then(|| format!("without the variant {BASELINE} there are no ratios")),
+        (ladder.len() == 1).then(|| {
+            "one number of photons gives no rate, no ratio at equal time and no time to 1 %".to_owned()
+        }),
+        lacks_asked.then(|| {
+            let asked = grouped(asked);
+            format!("no run with the {asked} photons asked for is finished; tables show the largest N")
+        }),
+        (study.seeds.len() == 1).then(|| "one seed says nothing about the spread of an error".to_owned()),
+    ];
+    let of_study = of_study.into_iter().flatten();
+    limits(study, table).into_iter().chain(of_study).chain(study.warnings.iter().cloned()).collect()
 }
 
 /// For every variant and grid, where the reference limits its error.
@@ -102,27 +95,30 @@ fn limits(study: &Study, table: &Table) -> Vec<String> {
 
 /// What the marks mean, for those that a table can carry.
 pub fn footnotes(table: &Table, marks: &Marks) -> Vec<String> {
-    let mut notes = Vec::new();
     let trends = || table.trends.iter().flatten();
-    if table.rows.iter().any(|r| r.limited_by_reference) {
-        notes.push(format!(
-            "{} limited by the reference: less than {REFERENCE_MARGIN} x its own error, or a rate fitted to such errors",
-            marks.limited
-        ));
-    }
-    let extrapolated = table.rows.iter().filter_map(|r| r.ratio_equal_time).any(|p| p.extrapolated)
-        || trends().filter_map(|t| t.time_to_target).any(|p| p.extrapolated);
-    if extrapolated {
-        notes.push(format!(
-            "{} extrapolated by the fitted law beyond the numbers of photons measured",
-            marks.extrapolated
-        ));
-    }
-    if trends().filter_map(|t| t.law).any(|law| law.uncertainty == Uncertainty::Residuals) {
-        notes.push(format!(
-            "{} one seed: the standard error is that of the residuals about the line, not a spread over seeds",
-            marks.one_seed
-        ));
-    }
-    notes
+    let predictions = table.rows.iter().filter_map(|r| r.ratio_equal_time);
+    let mut predictions = predictions.chain(trends().filter_map(|t| t.time_to_target));
+    let mut laws = trends().filter_map(|t| t.law);
+    let of_marks = [
+        (
+            table.rows.iter().any(|r| r.limited_by_reference),
+            marks.limited,
+            format!(
+                "limited by the reference: less than {REFERENCE_MARGIN} x its own error, or a rate fitted to such errors"
+            ),
+        ),
+        (
+            predictions.any(|p| p.extrapolated),
+            marks.extrapolated,
+            "extrapolated by the fitted law beyond the numbers of photons measured".to_owned(),
+        ),
+        (
+            laws.any(|law| law.uncertainty == Uncertainty::Residuals),
+            marks.one_seed,
+            "one seed: the standard error is that of the residuals about the line, not a spread over seeds"
+                .to_owned(),
+        ),
+    ];
+    let carried = of_marks.into_iter().filter(|(is_carried, ..)| *is_carried);
+    carried.map(|(_, mark, meaning)| format!("{mark} {meaning}")).collect()
 }
