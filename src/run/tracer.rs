@@ -48,7 +48,7 @@ impl PointSet {
     pub fn provide<U: UsePoints>(&self, user: U) -> Result<U::Output> {
         Ok(match self.sequence {
             Sequence::Independent => user.with(&IndependentPoints::new(self.seed, self.replicate)),
-            Sequence::Sobol => user.with(&SobolPoints::new()),
+            Sequence::Sobol => user.with(&SobolPoints),
             Sequence::SobolOwen => user.with(&OwenPoints::new(self.seed, self.replicate)),
             _ => user.with(&self.any()?),
         })
