@@ -224,9 +224,9 @@ impl<'a> Report<'a> {
                 mean: outcome.census.dimension_mean(),
                 max: outcome.census.dimension_max,
                 histogram: outcome.census.dimension_histogram.clone(),
-                mean_by_purpose: Purpose::ALL
-                    .iter()
-                    .map(|p| (p.label(), outcome.census.drawn_for[*p as usize] as f64 / photons))
+                mean_by_purpose: Purpose::LABELS
+                    .into_iter()
+                    .zip(outcome.census.drawn_for.map(|drawn| drawn as f64 / photons))
                     .collect(),
             },
             exceptions: outcome.census.exceptions,
