@@ -97,7 +97,7 @@ impl<'r> Marginal<'r> {
                 s - value / ((self.level + self.rise * s) * self.sin_cos(t).0)
             }),
             Solver::QuadraticNewton => return self.quadratic_newton(u),
-            Solver::Ridder => ridder((0.0, -u), (w, 1.0 - u), TOLERANCE, residual),
+            Solver::Ridder => ridder([(0.0, -u), (w, 1.0 - u)], TOLERANCE, residual),
             Solver::Bisection => bracketed([0.0, w], f64::NAN, TOLERANCE, residual, bisection_step),
         };
         let (sin, cos) = self.sin_cos(&root.by_product);

@@ -10,14 +10,27 @@ use super::{OPEN_EVALUATIONS, Root, inside};
 /// one; neither is evaluated.
 #[inline]
 pub fn bracketed<T>(
-    [mut low, mut high]: [f64; 2],
+    [low, high]: [f64; 2],
     start: f64,
     tolerance: f64,
     mut f: impl FnMut(f64) -> (f64, T),
     mut step: impl FnMut(f64, f64, &T) -> f64,
 ) -> Root<T> {
-    let mut x = if inside(start, low, high) { start } else { low + 0.5 * (high - low) };
-    let (mut value, mut by_product) = f(x);
+    let x = if inside(start, low, high) { start } else { low + 0.5 * (high - low) };
+    let at = f(x);
+    shrink([low, high], (x, at), tolerance, f, |x, value, t| (step(x, value, t), f64::INFINITY))
+}
+
+/// The same from a point where `f` has been evaluated. A step tells too how much it leaves at most of the value where it
+/// ends: where that is within the tolerance it is taken unseen, without an evaluation.
+#[inline]
+pub(super) fn shrink<T>(
+    [mut low, mut high]: [f64; 2],
+    (mut x, (mut value, mut by_product)): (f64, (f64, T)),
+    tolerance: f64,
+    mut f: impl FnMut(f64) -> (f64, T),
+    mut step: impl FnMut(f64, f64, &T) -> (f64, f64),
+) -> Root<T> {
     let mut evaluations = 1;
     while value.abs() > tolerance {
         if value > 0.0 {
@@ -25,12 +38,17 @@ pub fn bracketed<T>(
         } else {
             low = x;
         }
+        let (next, left) = step(x, value, &by_product);
+        let is_inside = inside(next, low, high);
+        if is_inside && left <= tolerance {
+            x = next;
+            break;
+        }
         let middle = low + 0.5 * (high - low);
         if !inside(middle, low, high) {
             break; // The bracket is one ulp wide.
         }
-        let next = step(x, value, &by_product);
-        x = if evaluations < OPEN_EVALUATIONS && inside(next, low, high) { next } else { middle };
+        x = if is_inside && evaluations < OPEN_EVALUATIONS { next } else { middle };
         (value, by_product) = f(x);
         evaluations += 1;
     }

@@ -40,13 +40,7 @@ impl Solver {
 
     /// The name on the command line and in reports.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Secant => "secant",
-            Self::Newton => "newton",
-            Self::Ridder => "ridder",
-            Self::Bisection => "bisection",
-            Self::QuadraticNewton => "quadratic-newton",
-        }
+        ["secant", "newton", "ridder", "bisection", "quadratic-newton"][self as usize]
     }
 
     /// The solver of a name.
