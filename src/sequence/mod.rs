@@ -23,8 +23,7 @@ pub mod hammersley;
 pub mod lattice;
 pub mod kronecker;
 pub mod weyl;
-pub mod jittered;
-pub mod latin;
+pub mod stratified;
 pub mod shift;
 pub mod other;
 

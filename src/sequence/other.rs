@@ -9,13 +9,12 @@ use std::num::NonZeroU64;
 use super::halton::HaltonPoints;
 use super::hammersley::HammersleyPoints;
 use super::independent::IndependentPoints;
-use super::jittered::JitteredPoints;
 use super::kronecker::KroneckerPoints;
-use super::latin::LatinPoints;
 use super::lattice::LatticePoints;
 use super::owen::OwenPoints;
 use super::shift::{digital_shift, rotation};
 use super::sobol::SobolPoints;
+use super::stratified::StratifiedPoints;
 use super::{Points, Sequence};
 use crate::error::{Diagnostic, Kind, Result};
 
@@ -53,8 +52,8 @@ impl OtherPoints {
             Sequence::WeylRotation => Box::new(rotation(KroneckerPoints::weyl(), seed, replicate)),
             Sequence::Kronecker => Box::new(KroneckerPoints::roberts()),
             Sequence::KroneckerRotation => Box::new(rotation(KroneckerPoints::roberts(), seed, replicate)),
-            Sequence::Jittered => Box::new(JitteredPoints::new(seed, replicate, known()?)),
-            Sequence::LatinHypercube => Box::new(LatinPoints::new(seed, replicate, known()?)),
+            Sequence::Jittered => Box::new(StratifiedPoints::jittered(seed, replicate, known()?)),
+            Sequence::LatinHypercube => Box::new(StratifiedPoints::latin(seed, replicate, known()?)),
         }))
     }
 }
