@@ -66,12 +66,10 @@ impl Web {
 
 /// Radians, the half and the full turn exact.
 fn radians(degrees: f64) -> f64 {
-    if degrees == 180.0 {
-        PI
-    } else if degrees == 360.0 {
-        TAU
-    } else {
-        degrees * RADIANS_PER_DEGREE
+    match degrees {
+        180.0 => PI,
+        360.0 => TAU,
+        _ => degrees * RADIANS_PER_DEGREE,
     }
 }
 

@@ -128,12 +128,8 @@ impl Web {
     /// The largest stored intensity; of equal ones the first in the file.
     pub fn max_intensity(&self) -> MaxIntensity {
         let n_v = self.vertical_deg.len().max(1);
-        let mut best = (0, 0.0);
-        for (i, &c) in self.candela.iter().enumerate() {
-            if c > best.1 {
-                best = (i, c);
-            }
-        }
+        let larger = |best: (usize, f64), (i, &c): (usize, &f64)| if c > best.1 { (i, c) } else { best };
+        let best = self.candela.iter().enumerate().fold((0, 0.0), larger);
         let angle = |axis: &[f64], i: usize| axis.get(i).copied().unwrap_or(0.0);
         MaxIntensity {
             intensity_cd: best.1,

@@ -81,6 +81,14 @@ pub struct LobeData {
     pub declared_tis: Vec<f64>,
 }
 
+impl LobeData {
+    /// Channels, phi_i, theta_i, polar angles and azimuths: how many of each.
+    pub fn counts(&self) -> [usize; 5] {
+        let [phi_i, theta_i] = [&self.phi_i_deg, &self.theta_i_deg].map(Vec::len);
+        [self.channels, phi_i, theta_i, self.polar_deg.len(), self.azimuth_deg.len()]
+    }
+}
+
 /// A checked lobe: finite values that are not negative, angles that rise within their ranges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lobe {
@@ -139,11 +147,6 @@ impl Lobe {
                 format!("at most {MAX_VALUES} in all"),
             )
         })
-    }
-
-    /// Channels, phi_i, theta_i, polar angles and azimuths: how many of each.
-    pub fn counts(&self) -> [usize; 5] {
-        counts(&self.data)
     }
 
     /// The parts.
@@ -225,21 +228,11 @@ fn meet(a: LobeSide, b: LobeSide) -> bool {
     a == b || a == LobeSide::Both || b == LobeSide::Both
 }
 
-fn counts(data: &LobeData) -> [usize; 5] {
-    [
-        data.channels,
-        data.phi_i_deg.len(),
-        data.theta_i_deg.len(),
-        data.polar_deg.len(),
-        data.azimuth_deg.len(),
-    ]
-}
-
 fn check_counts(data: &LobeData) -> Result<()> {
     if ![1, 3].contains(&data.channels) {
         return out_of_range(format!("{} channels", data.channels), "1 or 3");
     }
-    let required = Lobe::value_count(counts(data))?;
+    let required = Lobe::value_count(data.counts())?;
     if data.values.len() != required {
         return out_of_range(
             format!("{} values", data.values.len()),
