@@ -193,7 +193,6 @@ impl<'a> Report<'a> {
             Accounts::new(scene, absorbed, of(outcome.escaped_lm()), of(outcome.killed_lm()))
         };
         let photons = outcome.photons as f64;
-        let mean_drawn_for = |purpose| outcome.census.drawn_for[purpose as usize] as f64 / photons;
         let receivers = scene.receivers.iter().zip(statistics).zip(files);
         Self {
             run: RunReport::new(scene, &outcome.plan, outcome.photons),
@@ -219,7 +218,10 @@ impl<'a> Report<'a> {
                 mean: outcome.census.dimension_mean(),
                 max: outcome.census.dimension_max,
                 histogram: outcome.census.dimension_histogram.clone(),
-                mean_by_purpose: Purpose::ALL.iter().map(|p| (p.label(), mean_drawn_for(*p))).collect(),
+                mean_by_purpose: Purpose::LABELS
+                    .into_iter()
+                    .zip(outcome.census.drawn_for.map(|drawn| drawn as f64 / photons))
+                    .collect(),
             },
             exceptions: outcome.census.exceptions,
             receivers: receivers

@@ -112,7 +112,7 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
-        all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add(cell));
+        all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add(cell, 1));
     }
 }
 
@@ -129,7 +129,7 @@ impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
-        all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add_amount(cell, self.amount));
+        all.routes.each_cell(arrival, |receiver, cell| all.counts[receiver].add(cell, self.amount));
     }
 
     #[inline]
