@@ -79,7 +79,7 @@ fn emission(criterion: &mut Criterion) {
         let lamp = lamp(photometry);
         let mut group = short(criterion, &format!("emission/{name}"));
         emissions(&mut group, "independent", &lamp, &IndependentPoints::new(1, 0));
-        emissions(&mut group, "sobol", &lamp, &SobolPoints::new());
+        emissions(&mut group, "sobol", &lamp, &SobolPoints);
         emissions(&mut group, "sobol-owen", &lamp, &OwenPoints::new(1, 0));
     }
 }

@@ -2,15 +2,15 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, Parser};
 
 use crate::run::MAX_REPLICATES;
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
 pub const MAX_THREADS: u32 = 1024;
 
-/// Arguments of `caustix render`.
-#[derive(Debug, Args)]
+/// Arguments of `caustix render`; by itself the command without a subcommand.
+#[derive(Debug, Parser)]
 pub struct RenderArgs {
     /// Scene file; the built-in scene if absent.
     pub scene: Option<PathBuf>,

@@ -6,13 +6,14 @@ use crate::emitter::Emits;
 use crate::error::Diagnostic;
 use crate::geometry::Shape;
 use crate::picture;
+use crate::report::json::json;
 use crate::report::numbers::digits;
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
-use super::{CheckArgs, exit, fail, print, render, warn};
+use super::{CheckArgs, Done, exit, print, render, warn};
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Check {
     ok: bool,
     requires: Vec<&'static str>,
@@ -84,39 +85,32 @@ impl Check {
             }
         });
         let emitters = scene.emitter_names.iter().zip(scene.emitters.as_slice());
+        let emitters =
+            emitters.map(|(name, e)| EmitterCheck { name: name.clone(), flux_emitted_lm: e.flux_lm() });
+        let receivers = scene.receivers.iter().map(|r| ReceiverCheck {
+            name: r.name.clone(),
+            cells: r.cells.len(),
+            area_m2: r.total_area_m2(),
+        });
+        let camera = scene.camera.as_ref().map(|c| CameraCheck {
+            pixels: c.pixels,
+            samples: c.samples,
+            method: c.method.word(),
+            photon_memory_mb: if c.method == Method::Map { c.photon_memory_bytes as f64 / 1e6 } else { 0.0 },
+        });
         // Sums of a run: counters of one replicate, sum and sum of squares over replicates.
         let per_cell = 2 * size_of::<u64>() + size_of::<u128>();
         let cells: usize = scene.receivers.iter().map(|r| r.cells.len()).sum();
+        let of_camera = scene.camera.as_ref().map_or(0, |c| picture::memory_bytes(c, scene.is_coloured()));
+        let memory_bytes = (scene.memory_bytes() + cells * per_cell) as u64 + of_camera;
         Self {
             ok: true,
             requires: requirements(scene),
             surfaces: surfaces.collect(),
-            emitters: emitters
-                .map(|(name, e)| EmitterCheck { name: name.clone(), flux_emitted_lm: e.flux_lm() })
-                .collect(),
-            receivers: scene
-                .receivers
-                .iter()
-                .map(|r| ReceiverCheck {
-                    name: r.name.clone(),
-                    cells: r.cells.len(),
-                    area_m2: r.total_area_m2(),
-                })
-                .collect(),
-            camera: scene.camera.as_ref().map(|c| CameraCheck {
-                pixels: c.pixels,
-                samples: c.samples,
-                method: c.method.word(),
-                photon_memory_mb: if c.method == Method::Map {
-                    c.photon_memory_bytes as f64 / 1e6
-                } else {
-                    0.0
-                },
-            }),
-            memory_mb: ((scene.memory_bytes() + cells * per_cell) as u64
-                + scene.camera.as_ref().map_or(0, |c| picture::memory_bytes(c, scene.is_coloured())))
-                as f64
-                / 1e6,
+            emitters: emitters.collect(),
+            receivers: receivers.collect(),
+            camera,
+            memory_mb: memory_bytes as f64 / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
         }
@@ -130,17 +124,7 @@ impl Check {
             found: e.found().to_string(),
             required: e.required().to_string(),
         };
-        Self {
-            ok: false,
-            requires: Vec::new(),
-            surfaces: Vec::new(),
-            emitters: Vec::new(),
-            receivers: Vec::new(),
-            camera: None,
-            memory_mb: 0.0,
-            warnings: Vec::new(),
-            errors: errors.iter().map(place).collect(),
-        }
+        Self { errors: errors.iter().map(place).collect(), ..Self::default() }
     }
 
     fn text(&self, name: &str) -> String {
@@ -160,51 +144,31 @@ impl Check {
             out += &format!("receiver   {}: {} cells, {} m2\n", r.name, r.cells, digits(r.area_m2));
         }
         if let Some(c) = &self.camera {
-            let [columns, rows] = c.pixels;
+            let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);
             let photons = match c.photon_memory_mb {
                 0.0 => String::new(),
                 mb => format!(", at most {mb:.0} MB of photons at a time"),
             };
-            out += &format!(
-                "camera     {columns} x {rows} pixels of {} samples, {}{photons}\n",
-                c.samples, c.method
-            );
+            out += &format!("camera     {columns} x {rows} pixels of {samples} samples, {method}{photons}\n");
         }
         out + &format!("memory     {:.1} MB\n", self.memory_mb)
     }
 }
 
 /// Runs the subcommand; the exit code.
-pub fn run(args: &CheckArgs) -> u8 {
+pub fn run(args: &CheckArgs) -> Done {
     let ready = render::load(args.scene.as_deref()).and_then(|(scene, _)| {
         // What `render` refuses is not ready.
-        picture::check(&scene).map_err(|e| vec![e])?;
+        picture::check(&scene)?;
         Ok(scene)
     });
-    match ready {
-        Ok(scene) => {
-            let check = Check::of_scene(&scene);
-            if args.json {
-                print_json(&check);
-            } else {
-                warn(&scene.warnings);
-                print(&check.text(&scene.identity.name));
-            }
-            exit::DONE
-        }
-        Err(errors) => {
-            if args.json {
-                print_json(&Check::of_errors(&errors));
-                return exit::WRONG;
-            }
-            fail(&errors)
-        }
+    if args.json {
+        let check = ready.as_ref().map_or_else(|errors| Check::of_errors(errors), Check::of_scene);
+        print(&json(&check)?);
+        return Ok(if check.ok { exit::DONE } else { exit::WRONG });
     }
-}
-
-fn print_json(check: &Check) {
-    match serde_json::to_string_pretty(check) {
-        Ok(text) => print(&(text + "\n")),
-        Err(e) => super::say(&format!("error: {e}")),
-    }
+    let scene = ready?;
+    warn(&scene.warnings);
+    print(&Check::of_scene(&scene).text(&scene.identity.name));
+    Ok(exit::DONE)
 }

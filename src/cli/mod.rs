@@ -10,6 +10,7 @@ mod compare;
 mod sample;
 mod bsdf;
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -66,13 +67,6 @@ enum Sub {
     Bsdf(BsdfArgs),
 }
 
-/// `caustix` without a subcommand.
-#[derive(Debug, Parser)]
-struct RenderCommand {
-    #[command(flatten)]
-    args: RenderArgs,
-}
-
 /// What is not built, and what there is instead.
 const INSTEAD: [(&str, &str); 3] = [
     ("--error", "--photons N sets the effort; the summary and report.json tell the standard errors it gave"),
@@ -93,29 +87,14 @@ fn with_hint(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// Why a subcommand did not do what it was asked for.
-struct Failure(Vec<Diagnostic>);
-
-impl From<Diagnostic> for Failure {
-    fn from(error: Diagnostic) -> Self {
-        Self(vec![error])
-    }
-}
-
-impl From<Vec<Diagnostic>> for Failure {
-    fn from(errors: Vec<Diagnostic>) -> Self {
-        Self(errors)
-    }
-}
-
 /// The exit code of a subcommand, or why it failed.
-type Done = std::result::Result<u8, Failure>;
+type Done = Result<u8, Vec<Diagnostic>>;
 
 /// Runs the command with the arguments of the process.
 pub fn main() -> ExitCode {
     let parsed = Command::try_parse().and_then(|command| match command.subcommand {
         Some(subcommand) => Ok(subcommand),
-        None => Ok(Sub::Render(RenderCommand::try_parse_from(["caustix"])?.args)),
+        None => RenderArgs::try_parse_from(["caustix"]).map(Sub::Render),
     });
     let done = match parsed.map_err(with_hint) {
         Err(error) => {
@@ -126,24 +105,22 @@ pub fn main() -> ExitCode {
         }
         Ok(Sub::Render(args)) => render::run(&args),
         Ok(Sub::Photometry(args)) => photometry::run(&args),
-        Ok(Sub::Check(args)) => Ok(check::run(&args)),
+        Ok(Sub::Check(args)) => check::run(&args),
         Ok(Sub::Compare(args)) => compare::run(&args),
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
     };
-    ExitCode::from(done.unwrap_or_else(|Failure(errors)| fail(&errors)))
+    ExitCode::from(done.unwrap_or_else(|errors| fail(&errors)))
 }
 
 /// A line to stderr; a closed stderr is no reason to fail.
 #[allow(clippy::print_stderr)]
 fn say(line: &str) {
-    use std::io::Write;
     let _written = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Text to stdout. A reader that has gone away (a closed pipe) is no reason to fail.
 fn print(text: &str) {
-    use std::io::Write;
     let mut out = std::io::stdout().lock();
     let _written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

@@ -27,45 +27,17 @@ pub(super) fn catch_interrupts() {
     }
 }
 
-/// A bar over photons on a terminal, nothing elsewhere.
-#[derive(Debug)]
-pub(super) struct Progress(ProgressBar);
-
-impl Progress {
-    /// A bar over this many photons.
-    pub(super) fn new(quiet: bool, photons: u64) -> Self {
-        let visible = !quiet && std::io::stderr().is_terminal();
-        let target =
-            if visible { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(Some(photons), target);
-        let template =
-            "{msg} {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        bar.enable_steady_tick(Duration::from_millis(250));
-        Self(bar)
+/// A bar over this many photons on a terminal, nothing elsewhere.
+pub(super) fn progress_bar(quiet: bool, photons: u64) -> ProgressBar {
+    let visible = !quiet && std::io::stderr().is_terminal();
+    let target = if visible { ProgressDrawTarget::stderr_with_hz(8) } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(photons), target);
+    let template = "{msg} {bar:32} {percent:>3} %  {human_pos} of {human_len} photons  {per_sec}  {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
     }
-
-    /// What is being done.
-    pub(super) fn say(&self, what: impl Into<std::borrow::Cow<'static, str>>) {
-        self.0.set_message(what);
-    }
-
-    /// This many more photons are done.
-    pub(super) fn add(&self, photons: u64) {
-        self.0.inc(photons);
-    }
-
-    /// Something to stderr, above the bar.
-    pub(super) fn aside(&self, write: impl FnOnce()) {
-        self.0.suspend(write);
-    }
-
-    /// Takes the bar away.
-    pub(super) fn finish(&self) {
-        self.0.finish_and_clear();
-    }
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
 }
 
 /// Processor time of the process, over all its threads.

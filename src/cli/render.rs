@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::write_bytes;
+use crate::files::atomic::{make_directory, write_bytes};
 use crate::files::scene_toml::{self, RunDefaults};
-use crate::picture::{AnyPicture, Watch, trace_picture};
+use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture};
 use crate::plot;
 use crate::report::camera::CameraReport;
 use crate::report::json::{Report, json};
@@ -20,8 +20,11 @@ use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 
 use super::args::MAX_THREADS;
-use super::progress::{INTERRUPTED, Progress, catch_interrupts};
+use super::progress::{INTERRUPTED, catch_interrupts, progress_bar};
 use super::{Done, RenderArgs, algorithm, count, exit, picture, print, say, warn};
+
+/// What the directory of a run is for.
+pub(super) const FOR_RESULTS: &str = "a directory for the results";
 
 /// Reads and builds a scene; without a path the built-in one.
 pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
@@ -46,12 +49,15 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         return seen_again(args, map, &scene, &plan, started);
     }
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
-    make_directory(&args.output)?;
+    make_directory(&args.output, FOR_RESULTS)?;
     say_rounding(asked, &plan);
     catch_interrupts();
     let (outcome, picture) = traced(args, &scene, &plan)?;
     let unseen = picture.as_ref().map_or(0, |picture| picture.summary().pixels_unseen);
-    let directory = destination(&args.output, &outcome, unseen)?;
+    let interrupted = outcome.stopped_by == StoppedBy::Interrupt;
+    let directory = beside_earlier(&args.output, interrupted || unseen > 0, |photons| {
+        photons > outcome.photons || (unseen > 0 && photons == outcome.photons)
+    })?;
     let receivers = scene.receivers.iter().enumerate();
     let statistics: Vec<_> = receivers.map(|(i, r)| ReceiverStatistics::new(&outcome, r, i)).collect();
     // A file that cannot be written must not cost the others: its error is told at the end.
@@ -64,7 +70,14 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
         let written = picture::write(&directory, &scene, &plan, spec, picture);
         camera = written.map_err(|e| unwritten.push(e)).ok();
-        unwritten.extend(save_photons(args, &outcome, picture).err());
+        // Of a whole run: part of one would not be what the settings say.
+        match &args.save_map {
+            Some(path) if outcome.stopped_by == StoppedBy::Photons => {
+                unwritten.extend(picture::save(path, picture).err());
+            }
+            Some(_) => say("caustix: interrupted, so the photons are not saved"),
+            None => {}
+        }
     }
     let total_s = started.elapsed().as_secs_f64();
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
@@ -76,9 +89,9 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         print(&format!("written to {}\n", directory.display()));
     }
     if !unwritten.is_empty() {
-        return Err(unwritten.into());
+        return Err(unwritten);
     }
-    if outcome.stopped_by == StoppedBy::Interrupt {
+    if interrupted {
         say(&format!(
             "caustix: interrupted after {} of {} photons; what there is was written to {}",
             grouped(outcome.photons),
@@ -136,78 +149,70 @@ fn plan(args: &RenderArgs, run: &RunDefaults, photons: Option<u64>) -> Result<Pl
 
 fn say_rounding(asked: Option<u64>, plan: &Plan) {
     if let Some(asked) = asked.filter(|n| *n != plan.photons()) {
-        say(&format!(
-            "caustix: {} photons instead of {}: {} replicates of equal size",
-            grouped(plan.photons()),
-            grouped(asked),
-            plan.replicates()
-        ));
-    }
-}
-
-/// The photons of a whole run; part of one would not be what the settings say.
-fn save_photons(args: &RenderArgs, outcome: &Outcome, picture: &AnyPicture) -> Result<()> {
-    match &args.save_map {
-        Some(path) if outcome.stopped_by == StoppedBy::Photons => picture::save(path, picture),
-        Some(_) => {
-            say("caustix: interrupted, so the photons are not saved");
-            Ok(())
-        }
-        None => Ok(()),
+        let (traced, asked, replicates) = (grouped(plan.photons()), grouped(asked), plan.replicates());
+        say(&format!("caustix: {traced} photons instead of {asked}: {replicates} replicates of equal size"));
     }
 }
 
 /// The camera's picture of saved photons, and nothing else.
 fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started: Instant) -> Done {
-    let pool = thread_pool(args.threads)?;
-    // A map that is refused leaves no directory behind.
-    let saved = picture::read(map, scene, plan)?;
-    make_directory(&args.output)?;
-    let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
-    let picture = pool.install(|| picture::of_saved(saved, scene, plan, watch))?;
     let Some(spec) = &scene.camera else { return Ok(exit::DONE) };
+    let picture = if scene.is_coloured() {
+        AnyPicture::Rgb(of_saved(args, map, scene, plan)?)
+    } else {
+        AnyPicture::Grey(of_saved(args, map, scene, plan)?)
+    };
     let unseen = picture.summary().pixels_unseen;
     let directory = beside_earlier(&args.output, unseen > 0, |_| true)?;
     let camera = picture::write(&directory, scene, plan, spec, &picture)?;
     let report = SavedReport::new(scene, plan, map, camera, started.elapsed().as_secs_f64());
     write_report(&directory, &report)?;
     if !args.quiet {
-        print(&format!("scene      {}\n", scene.identity.name));
-        print(&format!(
-            "photons    those saved in {}; none were traced, so receivers have no maps\n",
-            map.display()
-        ));
+        let (name, map) = (&scene.identity.name, map.display());
+        print(&format!("scene      {name}\nphotons    those saved in {map}; "));
+        print("none were traced, so receivers have no maps\n");
         print(&report.camera.text());
         print(&format!("written to {}\n", directory.display()));
     }
     Ok(seen_wholly(unseen, &directory))
 }
 
+/// The picture of photons from a file.
+fn of_saved<const C: usize>(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan) -> Result<Picture<C>> {
+    let pool = thread_pool(args.threads)?;
+    // A map that is refused leaves no directory behind.
+    let saved = picture::read(map, scene, plan)?;
+    make_directory(&args.output, FOR_RESULTS)?;
+    let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
+    pool.install(|| picture_of_saved(scene, plan, saved, watch))
+}
+
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<(Outcome, Option<AnyPicture>)> {
     let pool = thread_pool(args.threads)?;
-    let progress = Progress::new(args.quiet, plan.photons());
-    progress.say("tracing");
+    let progress = progress_bar(args.quiet, plan.photons());
+    progress.set_message("tracing");
     // The camera may have been at work before: photons are traced pass by pass.
     let photons = |photons| {
-        progress.say("tracing");
-        progress.add(photons);
+        progress.set_message("tracing");
+        progress.inc(photons);
     };
     let outcome = pool.install(|| {
         if scene.camera.is_none() {
             return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
         }
-        let watch = Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|_| progress.say("camera") };
+        let watch =
+            Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|_| progress.set_message("camera") };
         let (outcome, picture) = trace_picture(scene, plan, args.save_map.is_some(), watch)?;
         Ok((outcome, Some(picture)))
     });
-    progress.finish();
+    progress.finish_and_clear();
     outcome
 }
 
 /// The threads that are asked for, all cores where none are.
 pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
-    if threads.is_some_and(|t| t == 0 || t > MAX_THREADS) {
-        let found = format!("--threads {}", threads.unwrap_or(0));
+    if let Some(threads) = threads.filter(|t| !(1..=MAX_THREADS).contains(t)) {
+        let found = format!("--threads {threads}");
         return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_THREADS} threads")));
     }
     let threads = threads.unwrap_or(0);
@@ -216,41 +221,19 @@ pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
     })
 }
 
-pub(super) fn make_directory(path: &Path) -> Result<()> {
-    std::fs::create_dir_all(path).map_err(|e| {
-        Diagnostic::new(
-            Kind::Io,
-            format!("\"{e}\" while making the directory"),
-            "a directory for the results",
-        )
-        .in_file(path)
-    })
-}
-
-/// Where the results of a run go, of whose picture an interrupt left so many pixels unseen.
-fn destination(output: &Path, outcome: &Outcome, unseen: u64) -> Result<PathBuf> {
-    let interrupted = outcome.stopped_by == StoppedBy::Interrupt || unseen > 0;
-    beside_earlier(output, interrupted, |photons| {
-        photons > outcome.photons || (unseen > 0 && photons == outcome.photons)
-    })
-}
-
 /// The directory that was asked for, but for interrupted results that would replace those of `more` photons there: they go
 /// into `interrupted/` beside them.
 fn beside_earlier(output: &Path, interrupted: bool, more: impl Fn(u64) -> bool) -> Result<PathBuf> {
-    if !interrupted {
+    let earlier = || {
+        let text = std::fs::read_to_string(output.join("report.json")).ok()?;
+        serde_json::from_str::<serde_json::Value>(&text).ok()?.get("photons")?.as_u64()
+    };
+    if !interrupted || !earlier().is_some_and(more) {
         return Ok(output.to_path_buf());
     }
-    let earlier = std::fs::read_to_string(output.join("report.json"))
-        .ok()
-        .and_then(|text| serde_json::from_str::<serde_json::Value>(&text).ok())
-        .and_then(|report| report.get("photons").and_then(serde_json::Value::as_u64));
-    if earlier.is_some_and(more) {
-        let beside = output.join("interrupted");
-        make_directory(&beside)?;
-        return Ok(beside);
-    }
-    Ok(output.to_path_buf())
+    let beside = output.join("interrupted");
+    make_directory(&beside, FOR_RESULTS)?;
+    Ok(beside)
 }
 
 fn write_report(directory: &Path, report: &impl serde::Serialize) -> Result<()> {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use crate::emitter::AimFrame;
 use crate::emitter::photometric::grid_axes;
@@ -92,7 +92,11 @@ fn certify(args: &SampleArgs) -> Result<CertificateReport> {
     })
 }
 
-/// Writes the directions that `first` hands over, block by block. Nothing is written where it fails.
+/// Writes the directions that `first` hands over, block by block, as CSV. Nothing is written where it fails.
+///
+/// Columns: `index` from 0; `vertical_deg`, `horizontal_deg` in the file's own photometric convention, symmetry unfolded; the
+/// unit vector `x,y,z` along (r, u, -a) of docs/PHOTOMETRIC_FRAME.md, which is the world of a lamp that hangs (aim -z, up +y);
+/// the coordinates that the sample took.
 fn write_directions(
     path: &Path,
     kind: PhotometricType,
@@ -100,10 +104,19 @@ fn write_directions(
 ) -> Result<Effort> {
     let mut outcome = Ok(Effort::default());
     let written = write_atomically(path, |out| {
-        let mut table = Table::new(out, kind)?;
-        let mut rows = Ok(());
+        out.write_all(b"index,vertical_deg,horizontal_deg,x,y,z,coordinates\n")?;
+        let axes = AimFrame::new(DVec3::NEG_Z, Some(DVec3::Y))
+            .and_then(|frame| grid_axes(kind, frame))
+            .map_err(|e| io::Error::other(e.to_string()))?;
+        let (mut index, mut rows) = (0u64, Ok(()));
         outcome = first(&mut |block| {
-            rows = table.rows(block);
+            rows = block.iter().try_for_each(|Sampled { draw, direction }| {
+                let (vertical, horizontal) = file_angles_deg(kind, draw.theta_rad, draw.phi_rad);
+                let DVec3 { x, y, z } = axes * *direction;
+                writeln!(out, "{index},{vertical},{horizontal},{x},{y},{z},{}", draw.coordinates)?;
+                index += 1;
+                Ok(())
+            });
             rows.is_ok()
         });
         match &outcome {
@@ -113,36 +126,6 @@ fn write_directions(
     });
     let effort = outcome?;
     written.map(|()| effort)
-}
-
-/// The directions as CSV: `index` from 0; `vertical_deg`, `horizontal_deg` in the file's own photometric convention,
-/// symmetry unfolded; the unit vector `x,y,z` along (r, u, -a) of docs/PHOTOMETRIC_FRAME.md, which is the world of a lamp
-/// that hangs (aim -z, up +y); the coordinates that the sample took.
-struct Table<'w, W> {
-    out: &'w mut W,
-    kind: PhotometricType,
-    axes: DMat3,
-    index: u64,
-}
-
-impl<'w, W: Write> Table<'w, W> {
-    fn new(out: &'w mut W, kind: PhotometricType) -> io::Result<Self> {
-        out.write_all(b"index,vertical_deg,horizontal_deg,x,y,z,coordinates\n")?;
-        let axes = AimFrame::new(DVec3::NEG_Z, Some(DVec3::Y))
-            .and_then(|frame| grid_axes(kind, frame))
-            .map_err(|e| io::Error::other(e.to_string()))?;
-        Ok(Self { out, kind, axes, index: 0 })
-    }
-
-    fn rows(&mut self, block: &[Sampled]) -> io::Result<()> {
-        for Sampled { draw, direction } in block {
-            let (vertical, horizontal) = file_angles_deg(self.kind, draw.theta_rad, draw.phi_rad);
-            let DVec3 { x, y, z } = self.axes * *direction;
-            writeln!(self.out, "{},{vertical},{horizontal},{x},{y},{z},{}", self.index, draw.coordinates)?;
-            self.index += 1;
-        }
-        Ok(())
-    }
 }
 
 #[cfg(test)]

@@ -36,6 +36,16 @@ pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
     write_atomically(path, |out| out.write_all(bytes))
 }
 
+/// Makes a directory, and those above it, where they are not there yet; `required` says what it is for.
+///
+/// # Errors
+/// [`Kind::Io`], with the path.
+pub fn make_directory(path: &Path, required: &str) -> Result<()> {
+    fs::create_dir_all(path).map_err(|e| {
+        Diagnostic::new(Kind::Io, format!("\"{e}\" while making the directory"), required).in_file(path)
+    })
+}
+
 /// Writes several texts into a directory that is there: paths of those written, and what went wrong with the others. One that
 /// cannot be written keeps no other from being.
 pub fn write_each(directory: &Path, files: &[(&str, String)]) -> (Vec<PathBuf>, Vec<Diagnostic>) {

@@ -99,11 +99,18 @@ fn open(path: &Path, limit_bytes: u64) -> Result<File> {
 }
 
 fn too_large(path: &Path, limit_bytes: u64) -> Diagnostic {
-    Diagnostic::new(
-        Kind::Limit,
-        format!("the file `{}`, which is larger than {} MiB", path.display(), limit_bytes >> 20),
-        format!("a file of at most {} MiB", limit_bytes >> 20),
-    )
+    let (shown, limit) = (path.display(), limit_bytes >> 20);
+    let found = format!("the file `{shown}`, which is larger than {limit} MiB");
+    Diagnostic::new(Kind::Limit, found, format!("a file of at most {limit} MiB"))
+}
+
+/// That bytes which are there already are no more than `limit_bytes`.
+pub(crate) fn check_length(bytes: &[u8], limit_bytes: u64) -> Result<()> {
+    if bytes.len() as u64 <= limit_bytes {
+        return Ok(());
+    }
+    let found = format!("more than {limit_bytes} bytes");
+    Err(Diagnostic::new(Kind::Limit, found, format!("at most {limit_bytes} bytes")))
 }
 
 /// The bytes of a regular file of at most `limit_bytes`, even if it grows while it is read.

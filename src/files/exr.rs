@@ -87,28 +87,28 @@ fn encode(
     attributes: &[(String, Value)],
     light: Light,
 ) -> Result<Vec<u8>> {
-    check_channels(width, height, channels)?;
-    let list = channels.iter().map(|channel| {
-        let samples = match channel.data {
-            Data::F32(values) => exr::FlatSamples::F32(values.to_vec()),
-            Data::U32(values) => exr::FlatSamples::U32(values.to_vec()),
-        };
-        exr::AnyChannel::new(text(channel.name), samples)
-    });
+    let cells = width.checked_mul(height).filter(|&n| n > 0 && n <= MOST_PIXELS).ok_or_else(|| {
+        Diagnostic::new(Kind::Range, format!("a map of {width} x {height} cells"), "1 to 2^28 cells")
+    })?;
+    let channels = checked(channels, cells)?;
     let mut described = exr::LayerAttributes::default();
     for (name, value) in attributes {
         if described.other.insert(text(name), attribute(value)).is_some() {
             return Err(bad_name("attribute", name, "a name used once"));
         }
-        check_attribute_name(name)?;
+        check_name("attribute", name)?;
+        // Names that the format gives a type and a meaning of its own.
+        if ::exr::meta::header::standard_names::ALL.contains(&name.as_bytes()) {
+            return Err(bad_name("attribute", name, "a name that OpenEXR does not use itself"));
+        }
     }
     let encoding = exr::Encoding {
         compression: exr::Compression::ZIP16,
         blocks: exr::Blocks::ScanLines,
         line_order: exr::LineOrder::Increasing,
     };
-    let channels = exr::AnyChannels::sort(list.collect());
-    let layer = exr::Layer::new((width, height), described, encoding, channels);
+    let layer =
+        exr::Layer::new((width, height), described, encoding, exr::AnyChannels::sort(channels.into()));
     let mut image = exr::Image::from_layer(layer);
     if light == Light::Luminance {
         image.attributes.chromaticities = Some(BT709);
@@ -123,41 +123,31 @@ fn encode(
     Ok(bytes)
 }
 
-fn check_channels(width: usize, height: usize, channels: &[Channel<'_>]) -> Result<()> {
-    let cells = width.checked_mul(height).filter(|&n| n > 0 && n <= MOST_PIXELS).ok_or_else(|| {
-        Diagnostic::new(Kind::Range, format!("a map of {width} x {height} cells"), "1 to 2^28 cells")
-    })?;
+/// The channels, of so many values each.
+fn checked(channels: &[Channel<'_>], cells: usize) -> Result<Vec<exr::AnyChannel<exr::FlatSamples>>> {
     if channels.is_empty() {
         return Err(Diagnostic::new(Kind::Range, "no channel", "at least one channel"));
     }
+    let mut list = Vec::new();
     for (i, channel) in channels.iter().enumerate() {
-        let length = match channel.data {
-            Data::F32(values) => values.len(),
-            Data::U32(values) => values.len(),
+        let samples = match channel.data {
+            Data::F32(values) => exr::FlatSamples::F32(values.to_vec()),
+            Data::U32(values) => exr::FlatSamples::U32(values.to_vec()),
         };
-        if length != cells {
-            let found = format!("{length} values in channel \"{}\"", channel.name);
+        if samples.len() != cells {
+            let found = format!("{} values in channel \"{}\"", samples.len(), channel.name);
             return Err(Diagnostic::new(Kind::Range, found, format!("{cells} values")));
         }
-        check_length("channel", channel.name)?;
+        check_name("channel", channel.name)?;
         if channels[..i].iter().any(|other| other.name == channel.name) {
             return Err(bad_name("channel", channel.name, "a name used once"));
         }
+        list.push(exr::AnyChannel::new(text(channel.name), samples));
     }
-    Ok(())
+    Ok(list)
 }
 
-/// Names that the format gives a type and a meaning of its own.
-fn check_attribute_name(name: &str) -> Result<()> {
-    check_length("attribute", name)?;
-    let reserved = ::exr::meta::header::standard_names::ALL;
-    if reserved.contains(&name.as_bytes()) {
-        return Err(bad_name("attribute", name, "a name that OpenEXR does not use itself"));
-    }
-    Ok(())
-}
-
-fn check_length(what: &str, name: &str) -> Result<()> {
+fn check_name(what: &str, name: &str) -> Result<()> {
     if name.is_empty() || name.len() > 255 || name.contains('\0') {
         return Err(bad_name(what, name, "a name of 1 to 255 bytes without a zero byte"));
     }

@@ -5,6 +5,7 @@
 pub mod atomic;
 pub mod bsdf;
 pub mod bytes;
+mod excerpt;
 pub mod exr;
 pub mod height_image;
 pub mod lm63;

@@ -77,14 +77,14 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
         }
         match keyword {
             "v" => {
-                vertex(&line, keyword, &words)?;
+                coordinates(&line, keyword, &words)?;
                 // Numbers beyond the third are a colour, or a weight of 1.
                 let [x, y, z] = [words[0], words[1], words[2]];
                 checked.geometry.extend(["v ", x, " ", y, " ", z, "\n"]);
                 vertices += 1;
             }
             "vn" => {
-                normal(&line, keyword, &words)?;
+                coordinates(&line, keyword, &words)?;
                 checked.geometry.extend([content, "\n"]);
                 normals += 1;
             }
@@ -95,13 +95,9 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
             }
             _ if IGNORED.contains(&keyword) => {}
             _ if checked.warnings.len() < 10 => {
-                let found = format!("{} (ignored)", quote(keyword));
-                checked.warnings.push(line.refuse(
-                    Kind::Syntax,
-                    keyword,
-                    found,
-                    "v, vn, f: polygons are read",
-                ));
+                let (found, required) =
+                    (format!("{} (ignored)", quote(keyword)), "v, vn, f: polygons are read");
+                checked.warnings.push(line.refuse(Kind::Syntax, keyword, found, required));
             }
             _ => {}
         }
@@ -112,24 +108,21 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
     Ok(checked)
 }
 
-fn vertex(line: &Line, keyword: &str, words: &[&str]) -> Result<()> {
-    match line.numbers(words)?[..] {
+/// Checks the numbers of `v` or `vn`.
+fn coordinates(line: &Line, keyword: &str, words: &[&str]) -> Result<()> {
+    match (keyword, &line.numbers(words)?[..]) {
         // Three more are a colour.
-        [_, _, _] | [_, _, _, 1.0] | [_, _, _, _, _, _] => Ok(()),
-        [_, _, _, w] => Err(line.refuse(Kind::Syntax, words[3], format!("weight {w}"), "no weight, or 1")),
-        ref other => {
-            let found = format!("a vertex of {} numbers", other.len());
-            Err(line.refuse(Kind::Syntax, keyword, found, "x, y, z"))
+        ("v", [_, _, _] | [_, _, _, 1.0] | [_, _, _, _, _, _]) => Ok(()),
+        ("v", [_, _, _, w]) => {
+            Err(line.refuse(Kind::Syntax, words[3], format!("weight {w}"), "no weight, or 1"))
         }
-    }
-}
-
-fn normal(line: &Line, keyword: &str, words: &[&str]) -> Result<()> {
-    match line.numbers(words)?[..] {
-        [x, y, z] if glam::DVec3::new(x, y, z).try_normalize().is_some() => Ok(()),
-        [_, _, _] => Err(line.refuse(Kind::Syntax, words[0], "a normal of length 0".into(), "a direction")),
-        ref other => {
-            let found = format!("a normal of {} numbers", other.len());
+        ("vn", &[x, y, z]) if glam::DVec3::new(x, y, z).try_normalize().is_some() => Ok(()),
+        ("vn", [_, _, _]) => {
+            Err(line.refuse(Kind::Syntax, words[0], "a normal of length 0".into(), "a direction"))
+        }
+        (_, other) => {
+            let what = if keyword == "v" { "vertex" } else { "normal" };
+            let found = format!("a {what} of {} numbers", other.len());
             Err(line.refuse(Kind::Syntax, keyword, found, "x, y, z"))
         }
     }

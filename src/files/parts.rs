@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::write_atomically;
+use crate::files::atomic::{make_directory, write_atomically};
 use crate::math::digest::sha256_hex;
 
 /// First line of every part.
@@ -51,16 +51,13 @@ impl Parts {
     /// Looks for the part of this key.
     pub fn load(&self, kind: &str, key: &str) -> Found {
         let path = self.path(kind, key);
-        let length = match std::fs::metadata(&path) {
-            Ok(metadata) => metadata.len(),
-            Err(_) => return Found::Missing,
-        };
+        let Ok(metadata) = std::fs::metadata(&path) else { return Found::Missing };
         let damaged = |found: String| {
             let required = "a whole part of this study: it is made again";
             Found::Damaged(Diagnostic::new(Kind::Syntax, found, required).in_file(&path))
         };
-        if length > MOST_BYTES {
-            return damaged(format!("{length} bytes"));
+        if metadata.len() > MOST_BYTES {
+            return damaged(format!("{} bytes", metadata.len()));
         }
         let bytes = match std::fs::read(&path) {
             Ok(bytes) => bytes,
@@ -79,11 +76,7 @@ impl Parts {
     /// # Errors
     /// A folder or file that cannot be written.
     pub fn store(&self, kind: &str, key: &str, content: &[u8]) -> Result<()> {
-        let io = |e: std::io::Error| {
-            Diagnostic::new(Kind::Io, format!("\"{e}\" while making the directory"), "a directory for parts")
-                .in_file(&self.directory)
-        };
-        std::fs::create_dir_all(&self.directory).map_err(io)?;
+        make_directory(&self.directory, "a directory for parts")?;
         write_atomically(self.path(kind, key), |file| {
             file.write_all(header(key, content).as_bytes())?;
             file.write_all(content)

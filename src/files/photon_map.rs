@@ -29,8 +29,7 @@ const DIGEST: usize = 32;
 /// # Errors
 /// What is no photon map, or one of another version.
 pub fn channels(bytes: &[u8]) -> Result<u32> {
-    let mut reader = Reader { rest: bytes };
-    reader.head()
+    Reader(bytes).head()
 }
 
 /// Writes the file.
@@ -38,42 +37,33 @@ pub fn channels(bytes: &[u8]) -> Result<u32> {
 /// # Errors
 /// Those of the writer; texts beyond 1 MiB.
 pub fn write<const C: usize>(map: &SavedMap<C>, writer: &mut dyn Write) -> io::Result<()> {
-    let mut out = Hashing { writer, hash: Sha256::new() };
-    out.put(MAGIC)?;
-    out.put(&VERSION.to_le_bytes())?;
-    out.put(&(C as u32).to_le_bytes())?;
+    let mut head = [&MAGIC[..], &VERSION.to_le_bytes(), &(C as u32).to_le_bytes()].concat();
     for text in [&map.scene_hash, &map.settings] {
         if text.len() > MOST_TEXT {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "a text of more than 1 MiB"));
         }
-        out.put(&(text.len() as u32).to_le_bytes())?;
-        out.put(text.as_bytes())?;
+        head.extend((text.len() as u32).to_le_bytes());
+        head.extend(text.as_bytes());
     }
-    out.put(&map.photons_traced.to_le_bytes())?;
-    out.put(&map.replicates.to_le_bytes())?;
-    out.put(&map.photon_lm.to_le_bytes())?;
-    for v in [map.frame.low(), map.frame.steps_m()] {
-        for x in v.to_array() {
-            out.put(&x.to_le_bytes())?;
-        }
-    }
-    out.put(&(map.photons.len() as u64).to_le_bytes())?;
-    let mut buffer = Vec::with_capacity(photon_bytes(C) * 4096);
+    head.extend(map.photons_traced.to_le_bytes());
+    head.extend(map.replicates.to_le_bytes());
+    let numbers = [map.frame.low().to_array(), map.frame.steps_m().to_array()].concat();
+    head.extend([map.photon_lm].iter().chain(&numbers).flat_map(|x| x.to_le_bytes()));
+    head.extend((map.photons.len() as u64).to_le_bytes());
+    let mut hash = Sha256::new();
+    let mut put = |bytes: &[u8]| {
+        hash.update(bytes);
+        writer.write_all(bytes)
+    };
+    put(&head)?;
     for some in map.photons.chunks(4096) {
-        buffer.clear();
-        for p in some {
+        let words = some.iter().flat_map(|p| {
             let [x, y, z] = p.cell;
-            for word in [x, y, z, p.direction, p.primitive, p.tag] {
-                buffer.extend_from_slice(&word.to_le_bytes());
-            }
-            for w in p.weight {
-                buffer.extend_from_slice(&w.to_le_bytes());
-            }
-        }
-        out.put(&buffer)?;
+            [x, y, z, p.direction, p.primitive, p.tag].into_iter().chain(p.weight.map(f32::to_bits))
+        });
+        put(&words.flat_map(u32::to_le_bytes).collect::<Vec<u8>>())?;
     }
-    let digest = out.hash.finalize();
-    writer.write_all(digest.as_slice())
+    writer.write_all(hash.finalize().as_slice())
 }
 
 /// Reads the file, of the scene with this hash.
@@ -82,33 +72,27 @@ pub fn write<const C: usize>(map: &SavedMap<C>, writer: &mut dyn Write) -> io::R
 /// What is no photon map, of another version or number of channels; a wrong checksum; a map of another scene; numbers that
 /// cannot be.
 pub fn read<const C: usize>(bytes: &[u8], expected_scene_hash: &str) -> Result<SavedMap<C>> {
-    let mut reader = Reader { rest: bytes };
+    let mut reader = Reader(bytes);
     let channels = reader.head()?;
     if channels as usize != C {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            format!("photons of {channels} channel(s)"),
-            format!("photons of {C} channel(s), as the scene has"),
-        ));
+        let required = format!("photons of {C} channel(s), as the scene has");
+        return Err(Diagnostic::new(Kind::Range, format!("photons of {channels} channel(s)"), required));
     }
     check_digest(bytes)?;
-    reader.rest = &reader.rest[..reader.rest.len().saturating_sub(DIGEST)];
+    reader.0 = &reader.0[..reader.0.len().saturating_sub(DIGEST)];
     let scene_hash = reader.text()?;
     let settings = reader.text()?;
     if scene_hash != expected_scene_hash {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            format!("photons with hash {scene_hash}, traced by {settings}"),
-            format!("photons of this scene and these settings, hash {expected_scene_hash}"),
-        )
-        .hint(
+        let found = format!("photons with hash {scene_hash}, traced by {settings}");
+        let required = format!("photons of this scene and these settings, hash {expected_scene_hash}");
+        return Err(Diagnostic::new(Kind::Range, found, required).hint(
             "ask for the same settings; if they are, trace the photons again: the scene or a file of it has changed",
         ));
     }
     let photons_traced = u64::from_le_bytes(reader.take()?);
     let replicates = u32::from_le_bytes(reader.take()?);
     let photon_lm = f64::from_le_bytes(reader.take()?);
-    let frame = reader.frame()?;
+    let frame = Frame::from_steps(reader.vector()?, reader.vector()?);
     let photons = reader.photons()?;
     let saved = SavedMap { scene_hash, settings, photons_traced, replicates, photon_lm, frame, photons };
     check(&saved)?;
@@ -131,22 +115,10 @@ fn check<const C: usize>(map: &SavedMap<C>) -> Result<()> {
     let good = |p: &Photon<C>| {
         p.replicate() < map.replicates as usize && p.weight.iter().all(|w| w.is_finite() && *w >= 0.0)
     };
-    match map.photons.iter().position(|p| !good(p)) {
-        None => Ok(()),
-        Some(i) => wrong(
-            format!(
-                "photon {i} of replicate {} with weights {:?}",
-                map.photons[i].replicate(),
-                map.photons[i].weight
-            ),
-            "a replicate of the run, and weights of at least 0",
-        ),
-    }
-}
-
-/// Bytes of a photon in the file.
-const fn photon_bytes(channels: usize) -> usize {
-    24 + 4 * channels
+    let Some(i) = map.photons.iter().position(|p| !good(p)) else { return Ok(()) };
+    let (replicate, weight) = (map.photons[i].replicate(), map.photons[i].weight);
+    let found = format!("photon {i} of replicate {replicate} with weights {weight:?}");
+    wrong(found, "a replicate of the run, and weights of at least 0")
 }
 
 fn check_digest(bytes: &[u8]) -> Result<()> {
@@ -155,62 +127,40 @@ fn check_digest(bytes: &[u8]) -> Result<()> {
     if Sha256::digest(body).as_slice() == digest {
         return Ok(());
     }
-    Err(Diagnostic::new(
-        Kind::Syntax,
-        "a photon map whose checksum does not fit its content",
-        "an undamaged, complete file",
-    )
-    .hint("trace the photons again"))
+    let found = "a photon map whose checksum does not fit its content";
+    Err(Diagnostic::new(Kind::Syntax, found, "an undamaged, complete file").hint("trace the photons again"))
 }
 
 fn truncated() -> Diagnostic {
     Diagnostic::new(Kind::Syntax, "a photon map that ends too soon", "a complete file")
 }
 
-/// Hands on what it hashes.
-struct Hashing<'w> {
-    writer: &'w mut dyn Write,
-    hash: Sha256,
-}
-
-impl Hashing<'_> {
-    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.hash.update(bytes);
-        self.writer.write_all(bytes)
-    }
-}
-
-struct Reader<'b> {
-    rest: &'b [u8],
-}
+/// What is left to read.
+struct Reader<'b>(&'b [u8]);
 
 impl<'b> Reader<'b> {
     fn bytes(&mut self, n: usize) -> Result<&'b [u8]> {
-        let (head, tail) = self.rest.split_at_checked(n).ok_or_else(truncated)?;
-        self.rest = tail;
-        Ok(head)
+        self.0.split_off(..n).ok_or_else(truncated)
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N]> {
-        let (head, tail) = self.rest.split_first_chunk::<N>().ok_or_else(truncated)?;
-        self.rest = tail;
+        let (head, tail) = self.0.split_first_chunk::<N>().ok_or_else(truncated)?;
+        self.0 = tail;
         Ok(*head)
     }
 
     /// Magic, version; gives the number of channels.
     fn head(&mut self) -> Result<u32> {
-        if self.bytes(MAGIC.len()).is_ok_and(|m| m == MAGIC) {
-            let version = u32::from_le_bytes(self.take()?);
-            if version != VERSION {
-                return Err(Diagnostic::new(
-                    Kind::Unavailable,
-                    format!("a photon map of version {version}"),
-                    format!("version {VERSION}"),
-                ));
-            }
-            return Ok(u32::from_le_bytes(self.take()?));
+        if self.bytes(MAGIC.len()).ok() != Some(MAGIC) {
+            let found = "a file that is no photon map";
+            return Err(Diagnostic::new(Kind::Syntax, found, "a photon map that caustix saved"));
         }
-        Err(Diagnostic::new(Kind::Syntax, "a file that is no photon map", "a photon map that caustix saved"))
+        let version = u32::from_le_bytes(self.take()?);
+        if version != VERSION {
+            let found = format!("a photon map of version {version}");
+            return Err(Diagnostic::new(Kind::Unavailable, found, format!("version {VERSION}")));
+        }
+        Ok(u32::from_le_bytes(self.take()?))
     }
 
     fn text(&mut self) -> Result<String> {
@@ -218,9 +168,7 @@ impl<'b> Reader<'b> {
         if length > MOST_TEXT {
             return Err(Diagnostic::new(Kind::Limit, format!("a text of {length} bytes"), "at most 1 MiB"));
         }
-        let bytes = self.bytes(length)?;
-        let text = std::str::from_utf8(bytes);
-        text.map(str::to_string)
+        String::from_utf8(self.bytes(length)?.to_vec())
             .map_err(|_| Diagnostic::new(Kind::Syntax, "a text that is not UTF-8", "UTF-8"))
     }
 
@@ -229,20 +177,13 @@ impl<'b> Reader<'b> {
         Ok(DVec3::new(number()?, number()?, number()?))
     }
 
-    fn frame(&mut self) -> Result<Frame> {
-        Ok(Frame::from_steps(self.vector()?, self.vector()?))
-    }
-
     /// The photons: exactly what is left. No more is allocated than the file itself holds.
     fn photons<const C: usize>(&mut self) -> Result<Vec<Photon<C>>> {
         let count = u64::from_le_bytes(self.take()?);
-        let size = photon_bytes(C);
-        if count != (self.rest.len() / size) as u64 || !self.rest.len().is_multiple_of(size) {
-            return Err(Diagnostic::new(
-                Kind::Syntax,
-                format!("{count} photons announced in {} bytes", self.rest.len()),
-                format!("{size} bytes a photon"),
-            ));
+        let size = 24 + 4 * C;
+        if count != (self.0.len() / size) as u64 || !self.0.len().is_multiple_of(size) {
+            let found = format!("{count} photons announced in {} bytes", self.0.len());
+            return Err(Diagnostic::new(Kind::Syntax, found, format!("{size} bytes a photon")));
         }
         let photon = |bytes: &[u8]| {
             let mut words = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_le_bytes(*w));
@@ -255,6 +196,6 @@ impl<'b> Reader<'b> {
                 weight: std::array::from_fn(|_| f32::from_bits(next())),
             }
         };
-        Ok(self.rest.chunks_exact(size).map(photon).collect())
+        Ok(self.0.chunks_exact(size).map(photon).collect())
     }
 }

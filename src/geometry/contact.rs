@@ -171,7 +171,10 @@ fn pairs_of_boxes(
                     for &q in &tree.order[of(b)] {
                         let (s, t) = (owner[p as usize], owner[q as usize]);
                         let is_new = i != j || p < q;
-                        if is_new && (s != t || with_itself(s)) && meet(&boxes[p as usize], &boxes[q as usize]) {
+                        if is_new
+                            && (s != t || with_itself(s))
+                            && meet(&boxes[p as usize], &boxes[q as usize])
+                        {
                             call(p, q);
                         }
                     }

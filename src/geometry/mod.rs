@@ -34,8 +34,8 @@ mod wide;
 use glam::DVec3;
 
 pub use box_mesh::box_mesh;
-pub use contact::{Bond, Contact, Touch};
 use contact::Contacts;
+pub use contact::{Bond, Contact, Touch};
 pub use height_image::{HEIGHT, HeightImage};
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
@@ -206,7 +206,16 @@ impl Geometry {
             }
         });
         let bound_cap = libm::scalbn(1.0 / normalisation.scale, -22);
-        Ok(Self { surfaces, info, tree, normalisation, bound_cap, bounds: (lo, hi), avx2: has_avx2(), contacts })
+        Ok(Self {
+            surfaces,
+            info,
+            tree,
+            normalisation,
+            bound_cap,
+            bounds: (lo, hi),
+            avx2: has_avx2(),
+            contacts,
+        })
     }
 
     /// The surfaces, by [`SurfaceId`].
@@ -274,7 +283,13 @@ fn describe(surfaces: &[Surface]) -> Result<Vec<Info>> {
     let mut first = 0usize;
     let mut info = Vec::with_capacity(surfaces.len());
     for (i, s) in surfaces.iter().enumerate() {
-        info.push(Info { rank: rank[i], body: s.shape.body(), first_primitive: first as u32, touches: false, is_clear: false });
+        info.push(Info {
+            rank: rank[i],
+            body: s.shape.body(),
+            first_primitive: first as u32,
+            touches: false,
+            is_clear: false,
+        });
         first += s.shape.face_count();
         if first > MAX_PRIMITIVES {
             return Err(Diagnostic::new(

@@ -28,7 +28,11 @@ impl Geometry {
         }
         hit = self.acting(hit, ray);
         let beyond = |(partner, _): &(&Partner, Crossing)| !partner.is_joint;
-        let film = if hit.front { None } else { self.covering(&hit, ray).find(beyond).map(|(p, _)| self.met(p.other, true)) };
+        let film = if hit.front {
+            None
+        } else {
+            self.covering(&hit, ray).find(beyond).map(|(p, _)| self.met(p.other, true))
+        };
         self.touching(hit, ray, film)
     }
 

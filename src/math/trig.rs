@@ -62,51 +62,28 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     }
 }
 
-// Coefficients: the Taylor series about 0, in z = s^2 <= 1/4, cut where the next term is below 2^-55 of the first.
+const SIN_OVER_S: [f64; 8] = taylor(1, false);
+const VERSINE_OVER_Z: [f64; 8] = taylor(2, false);
+const MOMENT_COS_OVER_Z: [f64; 8] = taylor(2, true);
+const MOMENT_SIN_OVER_S3: [f64; 8] = taylor(3, true);
 
-const SIN_OVER_S: [f64; 8] = [
-    1.0,
-    -1.0 / 6.0,
-    1.0 / 120.0,
-    -1.0 / 5_040.0,
-    1.0 / 362_880.0,
-    -1.0 / 39_916_800.0,
-    1.0 / 6_227_020_800.0,
-    -1.0 / 1_307_674_368_000.0,
-];
-
-const VERSINE_OVER_Z: [f64; 8] = [
-    1.0 / 2.0,
-    -1.0 / 24.0,
-    1.0 / 720.0,
-    -1.0 / 40_320.0,
-    1.0 / 3_628_800.0,
-    -1.0 / 479_001_600.0,
-    1.0 / 87_178_291_200.0,
-    -1.0 / 20_922_789_888_000.0,
-];
-
-const MOMENT_COS_OVER_Z: [f64; 8] = [
-    1.0 / 2.0,
-    -3.0 / 24.0,
-    5.0 / 720.0,
-    -7.0 / 40_320.0,
-    9.0 / 3_628_800.0,
-    -11.0 / 479_001_600.0,
-    13.0 / 87_178_291_200.0,
-    -15.0 / 20_922_789_888_000.0,
-];
-
-const MOMENT_SIN_OVER_S3: [f64; 8] = [
-    2.0 / 6.0,
-    -4.0 / 120.0,
-    6.0 / 5_040.0,
-    -8.0 / 362_880.0,
-    10.0 / 39_916_800.0,
-    -12.0 / 6_227_020_800.0,
-    14.0 / 1_307_674_368_000.0,
-    -16.0 / 355_687_428_096_000.0,
-];
+/// Coefficients of the Taylor series about 0, in z = s^2 <= 1/4, cut where the next term is below 2^-55 of the first:
+/// (-1)^k / n!, n = 2 k + first; of a moment times n - 1.
+const fn taylor(first: u64, is_moment: bool) -> [f64; 8] {
+    let (mut series, mut factorial, mut counted) = ([0.0; 8], 1, 1);
+    let mut k = 0;
+    while k < series.len() {
+        let n = 2 * k as u64 + first;
+        while counted < n {
+            counted += 1;
+            factorial *= counted;
+        }
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        series[k] = sign * (if is_moment { n - 1 } else { 1 }) as f64 / factorial as f64;
+        k += 1;
+    }
+    series
+}
 
 /// The first `N` terms of a series in z.
 #[inline(always)]

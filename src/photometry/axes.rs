@@ -14,11 +14,7 @@ pub enum PhotometricType {
 impl PhotometricType {
     /// `A`, `B` or `C`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::A => "A",
-            Self::B => "B",
-            Self::C => "C",
-        }
+        ["A", "B", "C"][self as usize]
     }
 }
 
@@ -86,31 +82,33 @@ pub(crate) fn check_axes(
     vertical_deg: &[f64],
     horizontal_deg: &[f64],
 ) -> Result<Vec<AxisNote>, AxisNote> {
-    let mut notes = Vec::new();
-    let v = AxisCheck { axis: Axis::Vertical, angles: vertical_deg };
-    let h = AxisCheck { axis: Axis::Horizontal, angles: horizontal_deg };
+    let mut v = AxisCheck { axis: Axis::Vertical, angles: vertical_deg, notes: Vec::new() };
+    let mut h = AxisCheck { axis: Axis::Horizontal, angles: horizontal_deg, notes: Vec::new() };
     v.increasing()?;
     h.increasing()?;
     match photometric_type {
         PhotometricType::C => {
-            v.check_vertical_c(&mut notes)?;
-            h.check_horizontal_c(&mut notes)?;
+            v.check_vertical_c()?;
+            h.check_horizontal_c()?;
         }
         PhotometricType::A => {
-            v.check_flat(90.0, "angles within -90..90", &mut notes)?;
-            h.check_flat(180.0, "angles within -180..180", &mut notes)?;
+            v.check_flat(90.0, "angles within -90..90")?;
+            h.check_flat(180.0, "angles within -180..180")?;
         }
         PhotometricType::B => {
-            v.check_flat(180.0, "angles within -180..180", &mut notes)?;
-            h.check_flat(90.0, "angles within -90..90", &mut notes)?;
+            v.check_flat(180.0, "angles within -180..180")?;
+            h.check_flat(90.0, "angles within -90..90")?;
         }
     }
-    Ok(notes)
+    v.notes.append(&mut h.notes);
+    Ok(v.notes)
 }
 
 struct AxisCheck<'a> {
     axis: Axis,
     angles: &'a [f64],
+    /// What is tolerated.
+    notes: Vec<AxisNote>,
 }
 
 impl AxisCheck<'_> {
@@ -124,6 +122,10 @@ impl AxisCheck<'_> {
             None => format!("no {name} angles"),
         };
         AxisNote { axis: self.axis, index, found, required, hint }
+    }
+
+    fn tolerate(&mut self, index: usize, required: &'static str, hint: &'static str) {
+        self.notes.push(self.note(index, required, hint));
     }
 
     fn last(&self) -> usize {
@@ -154,28 +156,28 @@ impl AxisCheck<'_> {
         }
     }
 
-    fn check_vertical_c(&self, notes: &mut Vec<AxisNote>) -> Result<(), AxisNote> {
+    fn check_vertical_c(&mut self) -> Result<(), AxisNote> {
         const ENDS: &str = "vertical angles of type C over 0..90, 90..180 or 0..180";
         self.within(0.0, 180.0, "vertical angles of type C within 0..180")?;
         if self.angles.len() < 2 {
             return Err(self.note(0, "at least 2 vertical angles: one has no solid angle", ""));
         }
         if ![0.0, 90.0].contains(&self.angles[0]) {
-            notes.push(self.note(0, ENDS, "the intensity is taken as zero below it"));
+            self.tolerate(0, ENDS, "the intensity is taken as zero below it");
         }
         if ![90.0, 180.0].contains(&self.angles[self.last()]) {
-            notes.push(self.note(self.last(), ENDS, "the intensity is taken as zero beyond it"));
+            self.tolerate(self.last(), ENDS, "the intensity is taken as zero beyond it");
         }
         Ok(())
     }
 
-    fn check_horizontal_c(&self, notes: &mut Vec<AxisNote>) -> Result<(), AxisNote> {
+    fn check_horizontal_c(&mut self) -> Result<(), AxisNote> {
         const RANGES: &str = "horizontal angles of type C: 0 alone, or over 0..90, 0..180, 90..270 or 0..360";
         self.within(0.0, 360.0, RANGES)?;
         let (first, last) = (self.angles[0], self.angles[self.last()]);
         if self.angles.len() == 1 {
             if first != 0.0 {
-                notes.push(self.note(0, RANGES, "the one plane is taken for all horizontal angles"));
+                self.tolerate(0, RANGES, "the one plane is taken for all horizontal angles");
             }
             return Ok(());
         }
@@ -187,31 +189,26 @@ impl AxisCheck<'_> {
         }
         let largest = self.angles.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         if first + 360.0 - last > 1.5 * largest {
-            notes.push(self.note(self.last(), RANGES, "the circle is closed across the gap"));
+            self.tolerate(self.last(), RANGES, "the circle is closed across the gap");
         } else if first != 0.0 {
-            notes.push(self.note(0, RANGES, "the circle is closed"));
+            self.tolerate(0, RANGES, "the circle is closed");
         }
         Ok(())
     }
 
-    fn check_flat(
-        &self,
-        most: f64,
-        required: &'static str,
-        notes: &mut Vec<AxisNote>,
-    ) -> Result<(), AxisNote> {
+    fn check_flat(&mut self, most: f64, required: &'static str) -> Result<(), AxisNote> {
         const ENDS: &str = "angles of types A and B over -90..90 or 0..90";
         self.within(-most, most, required)?;
         let (first, last) = (self.angles[0], self.angles[self.last()]);
         if self.angles.len() == 1 {
-            notes.push(self.note(0, ENDS, "the one angle is taken for all of -90..90"));
+            self.tolerate(0, ENDS, "the one angle is taken for all of -90..90");
             return Ok(());
         }
         if first != 0.0 && first != -90.0 {
-            notes.push(self.note(0, ENDS, "the intensity is taken as zero below it"));
+            self.tolerate(0, ENDS, "the intensity is taken as zero below it");
         }
         if last != 90.0 {
-            notes.push(self.note(self.last(), ENDS, "the intensity is taken as zero beyond it"));
+            self.tolerate(self.last(), ENDS, "the intensity is taken as zero beyond it");
         }
         Ok(())
     }

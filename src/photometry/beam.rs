@@ -67,17 +67,13 @@ impl Profile {
 
     /// The node of the maximum; of equal ones the nearest to the axis.
     fn peak(&self) -> Option<usize> {
-        let mut best: Option<usize> = None;
-        for (i, &c) in self.intensity_cd.iter().enumerate().filter(|&(_, &c)| c > 0.0) {
-            let better = best.is_none_or(|b| {
-                let nearer = self.angle_deg[i].abs() < self.angle_deg[b].abs();
-                c > self.intensity_cd[b] || (c == self.intensity_cd[b] && nearer)
-            });
-            if better {
-                best = Some(i);
-            }
-        }
-        best
+        let is_better = |i: usize, best: usize| {
+            let nearer = self.angle_deg[i].abs() < self.angle_deg[best].abs();
+            let (one, most) = (self.intensity_cd[i], self.intensity_cd[best]);
+            one > most || (one == most && nearer)
+        };
+        let lit = (0..self.intensity_cd.len()).filter(|&i| self.intensity_cd[i] > 0.0);
+        lit.reduce(|best, i| if is_better(i, best) { i } else { best })
     }
 
     /// Degrees from node `start` to where the intensity falls to `level`; `None` if it never does.

@@ -38,13 +38,7 @@ pub enum Revision {
 impl Revision {
     /// The year, as text.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Y1986 => "1986",
-            Self::Y1991 => "1991",
-            Self::Y1995 => "1995",
-            Self::Y2002 => "2002",
-            Self::Y2019 => "2019",
-        }
+        ["1986", "1991", "1995", "2002", "2019"][self as usize]
     }
 
     /// Whether field 12 (second number of the three-number record) is the ballast-lamp photometric factor. Later

@@ -1,6 +1,7 @@
 //! The web unfolded over the sphere, for sampling and integration.
 
 use super::axes::Fold;
+use super::web::Between;
 use super::{PhotometricType, Web};
 use crate::units::RADIANS_PER_DEGREE;
 use std::f64::consts::{PI, TAU};
@@ -27,13 +28,11 @@ pub struct FullGrid {
 #[derive(Debug, Clone, Copy)]
 struct Node {
     angle_deg: f64,
-    low: usize,
-    high: usize,
-    weight: f64,
+    at: Between,
 }
 
 fn stored(angle_deg: f64, index: usize) -> Node {
-    Node { angle_deg, low: index, high: index, weight: 0.0 }
+    Node { angle_deg, at: Between::node(index) }
 }
 
 impl Web {
@@ -45,14 +44,6 @@ impl Web {
     pub fn full_grid(&self) -> FullGrid {
         let vertical = unfold(self.vertical_fold(), &self.vertical_deg);
         let horizontal = unfold(self.horizontal_fold(), &self.horizontal_deg);
-        let n_v = self.vertical_deg.len();
-        let value = |v: &Node, h: &Node| {
-            let along_v = |plane: usize| {
-                let row = plane * n_v;
-                (1.0 - v.weight) * self.candela[row + v.low] + v.weight * self.candela[row + v.high]
-            };
-            (1.0 - h.weight) * along_v(h.low) + h.weight * along_v(h.high)
-        };
         let (polar, azimuth, shift) = match self.photometric_type {
             PhotometricType::C => (&vertical, &horizontal, 0.0),
             PhotometricType::A => (&vertical, &horizontal, 90.0),
@@ -62,7 +53,7 @@ impl Web {
         let mut intensity_cd = Vec::with_capacity(polar.len() * azimuth.len());
         for p in polar {
             for a in azimuth {
-                intensity_cd.push(if swapped { value(a, p) } else { value(p, a) });
+                intensity_cd.push(if swapped { self.blended(a.at, p.at) } else { self.blended(p.at, a.at) });
             }
         }
         FullGrid {
@@ -75,30 +66,25 @@ impl Web {
 
 /// Radians, the half and the full turn exact.
 fn radians(degrees: f64) -> f64 {
-    if degrees == 180.0 {
-        PI
-    } else if degrees == 360.0 {
-        TAU
-    } else {
-        degrees * RADIANS_PER_DEGREE
+    match degrees {
+        180.0 => PI,
+        360.0 => TAU,
+        _ => degrees * RADIANS_PER_DEGREE,
     }
 }
 
 /// The nodes of a folded axis over its whole range, in increasing order.
 fn unfold(fold: Fold, axis: &[f64]) -> Vec<Node> {
-    let as_stored = || axis.iter().enumerate().map(|(i, &a)| stored(a, i));
+    let nodes: Vec<Node> = axis.iter().enumerate().map(|(i, &a)| stored(a, i)).collect();
     match fold {
-        Fold::AsStored => as_stored().collect(),
+        Fold::AsStored => nodes,
         Fold::Constant => vec![stored(-90.0, 0), stored(90.0, 0)],
         Fold::Rotational => vec![stored(0.0, 0), stored(360.0, 0)],
-        Fold::MirrorZero => reflected(&as_stored().collect::<Vec<_>>(), 0.0, Side::Before),
-        Fold::Mirror0 => reflected(&as_stored().collect::<Vec<_>>(), 180.0, Side::After),
-        Fold::Quadrants => {
-            let half = reflected(&as_stored().collect::<Vec<_>>(), 90.0, Side::After);
-            reflected(&half, 180.0, Side::After)
-        }
-        Fold::Mirror90 => unfold_90_270(axis),
-        Fold::Circle => close_circle(axis),
+        Fold::MirrorZero => reflected(&nodes, 0.0, Side::Before),
+        Fold::Mirror0 => reflected(&nodes, 180.0, Side::After),
+        Fold::Quadrants => reflected(&reflected(&nodes, 90.0, Side::After), 180.0, Side::After),
+        Fold::Mirror90 => unfold_90_270(nodes, axis),
+        Fold::Circle => close_circle(nodes, axis),
     }
 }
 
@@ -120,24 +106,19 @@ fn reflected(nodes: &[Node], mirror: f64, side: Side) -> Vec<Node> {
 }
 
 /// H = 90..270 mirrored in the 90-270 plane: H stands for 180 - H too. The seam is the image of H = 180.
-fn unfold_90_270(axis: &[f64]) -> Vec<Node> {
-    let mut nodes: Vec<Node> = axis.iter().enumerate().map(|(i, &a)| stored(a, i)).collect();
+fn unfold_90_270(mut nodes: Vec<Node>, axis: &[f64]) -> Vec<Node> {
     let above = axis.partition_point(|&a| a < 180.0);
     if axis.get(above) != Some(&180.0) && above > 0 && above < axis.len() {
         let weight = (180.0 - axis[above - 1]) / (axis[above] - axis[above - 1]);
-        nodes.insert(above, Node { angle_deg: 180.0, low: above - 1, high: above, weight });
+        nodes.insert(above, Node { angle_deg: 180.0, at: Between { low: above - 1, high: above, weight } });
     }
-    let turned = |n: &Node, by: f64| Node { angle_deg: by - n.angle_deg, ..*n };
-    let before = nodes.iter().rev().filter(|n| n.angle_deg > 90.0 && n.angle_deg <= 180.0);
-    let after = nodes.iter().rev().filter(|n| n.angle_deg >= 180.0 && n.angle_deg < 270.0);
-    let before: Vec<Node> = before.map(|n| turned(n, 180.0)).collect();
-    let after: Vec<Node> = after.map(|n| turned(n, 540.0)).collect();
-    before.into_iter().chain(nodes).chain(after).collect()
+    let mut circle = reflected(&reflected(&nodes, 90.0, Side::Before), 270.0, Side::After);
+    circle.retain(|n| (0.0..=360.0).contains(&n.angle_deg));
+    circle
 }
 
 /// More than half a circle: the last plane is joined to the first, a turn further.
-fn close_circle(axis: &[f64]) -> Vec<Node> {
-    let mut nodes: Vec<Node> = axis.iter().enumerate().map(|(i, &a)| stored(a, i)).collect();
+fn close_circle(mut nodes: Vec<Node>, axis: &[f64]) -> Vec<Node> {
     let (Some(&first), Some(&last)) = (axis.first(), axis.last()) else {
         return nodes;
     };
@@ -146,7 +127,7 @@ fn close_circle(axis: &[f64]) -> Vec<Node> {
     }
     let end = axis.len() - 1;
     let weight = (360.0 - last) / (first + 360.0 - last);
-    let seam = Node { angle_deg: 0.0, low: end, high: 0, weight };
+    let seam = Node { angle_deg: 0.0, at: Between { low: end, high: 0, weight } };
     if first != 0.0 {
         nodes.insert(0, seam);
     }

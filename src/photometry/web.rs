@@ -128,12 +128,8 @@ impl Web {
     /// The largest stored intensity; of equal ones the first in the file.
     pub fn max_intensity(&self) -> MaxIntensity {
         let n_v = self.vertical_deg.len().max(1);
-        let mut best = (0, 0.0);
-        for (i, &c) in self.candela.iter().enumerate() {
-            if c > best.1 {
-                best = (i, c);
-            }
-        }
+        let larger = |best: (usize, f64), (i, &c): (usize, &f64)| if c > best.1 { (i, c) } else { best };
+        let best = self.candela.iter().enumerate().fold((0, 0.0), larger);
         let angle = |axis: &[f64], i: usize| axis.get(i).copied().unwrap_or(0.0);
         MaxIntensity {
             intensity_cd: best.1,
@@ -152,6 +148,11 @@ impl Web {
         let (Some(v), Some(h)) = (v, h) else {
             return 0.0;
         };
+        self.blended(v, h)
+    }
+
+    /// The intensity between stored angles, cd.
+    pub(super) fn blended(&self, v: Between, h: Between) -> f64 {
         let n_v = self.vertical_deg.len();
         let along_v = |plane: usize| {
             let row = plane * n_v;
@@ -168,10 +169,17 @@ fn blend(a: f64, b: f64, weight: f64) -> f64 {
 
 /// Between which stored angles a direction lies.
 #[derive(Debug, Clone, Copy)]
-struct Between {
-    low: usize,
-    high: usize,
-    weight: f64,
+pub(super) struct Between {
+    pub low: usize,
+    pub high: usize,
+    pub weight: f64,
+}
+
+impl Between {
+    /// At a stored angle.
+    pub(super) fn node(index: usize) -> Self {
+        Self { low: index, high: index, weight: 0.0 }
+    }
 }
 
 /// The stored angles around `x` after folding; `None` outside.
@@ -180,26 +188,18 @@ fn place(fold: Fold, axis: &[f64], x: f64) -> Option<Between> {
     match fold {
         Fold::AsStored => between(axis, x),
         Fold::MirrorZero => between(axis, x.abs()),
-        Fold::Constant => (x.abs() <= 90.0).then_some(Between { low: 0, high: 0, weight: 0.0 }),
-        Fold::Rotational => Some(Between { low: 0, high: 0, weight: 0.0 }),
+        Fold::Constant => (x.abs() <= 90.0).then_some(Between::node(0)),
+        Fold::Rotational => Some(Between::node(0)),
         Fold::Mirror0 => between(axis, fold_0(turn(x))),
         Fold::Quadrants => {
             let x = fold_0(turn(x));
             between(axis, if x > 90.0 { 180.0 - x } else { x })
         }
-        Fold::Mirror90 => {
-            let x = turn(x);
-            between(
-                axis,
-                if x < 90.0 {
-                    180.0 - x
-                } else if x > 270.0 {
-                    540.0 - x
-                } else {
-                    x
-                },
-            )
-        }
+        Fold::Mirror90 => match turn(x) {
+            x if x < 90.0 => between(axis, 180.0 - x),
+            x if x > 270.0 => between(axis, 540.0 - x),
+            x => between(axis, x),
+        },
         Fold::Circle => between(axis, turn(x)).or_else(|| across_the_end(axis, turn(x))),
     }
 }
@@ -214,7 +214,7 @@ fn between(axis: &[f64], x: f64) -> Option<Between> {
         return None;
     }
     if axis.len() == 1 {
-        return Some(Between { low: 0, high: 0, weight: 0.0 });
+        return Some(Between::node(0));
     }
     let high = axis.partition_point(|&a| a <= x).clamp(1, axis.len() - 1);
     let low = high - 1;

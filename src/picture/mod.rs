@@ -182,20 +182,16 @@ fn with_channels<const C: usize, T: Channels<C>>(
 pub fn check_saved<const C: usize>(scene: &Scene, saved: &SavedMap<C>) -> Result<()> {
     let camera = camera_of(scene)?;
     check(scene)?;
+    let refuse = |found: &str, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
     if camera.method == Method::Splat {
-        return Err(Diagnostic::new(
-            Kind::Range,
+        return refuse(
             "method \"splat\" and photons from a file",
             "method = \"map\": splatting joins photons to the pinhole while they are traced",
-        ));
+        );
     }
     let primitives = scene.geometry.primitive_count() as u64;
     if saved.photons.iter().any(|p| u64::from(p.primitive) >= primitives) {
-        return Err(Diagnostic::new(
-            Kind::Range,
-            "photons on surfaces that this scene does not have",
-            "photons of the same scene",
-        ));
+        return refuse("photons on surfaces that this scene does not have", "photons of the same scene");
     }
     let (number, most) = (saved.photons.len(), capacity::<C>(camera));
     if number > most {

@@ -16,7 +16,7 @@ pub struct Chosen {
 }
 
 /// How good a picture is: medians over the pixels that are not black.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Cost {
     /// Estimated bias over the pixel, percent.
     pub median_bias_percent: Option<f64>,
@@ -25,7 +25,7 @@ pub struct Cost {
 }
 
 /// How a picture was made, and how good it is. Names are those of report.json: they are only added to.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PictureSummary {
     /// How light got from photons into pixels.
     #[serde(serialize_with = "word")]

@@ -5,7 +5,7 @@ use crate::photometry::{Photometry, Summary};
 use crate::report::numbers::digits;
 
 use super::drawing::Drawing;
-use super::page::base_name;
+use super::page::{base_name, curve_angles};
 use super::polar::{Curve, PolarPlot};
 
 /// The diagram of a file: type C the planes C0-C180 and C90-C270; types A and B the vertical section (H = 0) and the
@@ -41,11 +41,8 @@ pub fn drawing(photometry: &Photometry, summary: &Summary) -> Drawing {
 
 /// Intensities at the table's own angles on both sides, and at whole degrees between.
 fn section(at: impl Fn(f64) -> f64, table_deg: &[f64]) -> Vec<(f64, f64)> {
-    let mut angles: Vec<f64> = (-180..=180).map(f64::from).collect();
-    angles.extend(table_deg.iter().flat_map(|a| [*a, -a]).filter(|a| a.abs() <= 180.0));
-    angles.sort_by(f64::total_cmp);
-    angles.dedup();
-    angles.into_iter().map(|a| (a, at(a))).collect()
+    let own = table_deg.iter().flat_map(|a| [*a, -a]);
+    curve_angles(180, 1, own).into_iter().map(|a| (a, at(a))).collect()
 }
 
 fn title(photometry: &Photometry) -> String {
@@ -58,12 +55,9 @@ fn title(photometry: &Photometry) -> String {
 }
 
 fn footer(s: &Summary) -> Vec<String> {
+    let flux = format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela));
     let angle = |name: &str, degrees: Option<f64>| degrees.map(|d| format!("{name} {}\u{b0}", digits(d)));
     let angles = [angle("beam angle", s.beam_angle_deg), angle("field angle", s.field_angle_deg)];
-    let mut lines = vec![format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela))];
-    let angles: Vec<String> = angles.into_iter().flatten().collect();
-    if !angles.is_empty() {
-        lines.push(angles.join(", "));
-    }
-    lines
+    let angles = angles.into_iter().flatten().reduce(|beam, field| format!("{beam}, {field}"));
+    [flux].into_iter().chain(angles).collect()
 }

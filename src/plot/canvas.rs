@@ -10,7 +10,7 @@ use crate::files::png::write_rgb8;
 use crate::report::colour::Colour;
 
 use super::chain::{contains, distance, distance_to_segment};
-use super::coverage::{Footprint, covered};
+use super::coverage::{Footprint, covered, pixels};
 use super::font;
 
 /// Longest run of a stroke that is rasterised at once: keeps the boxes of oblique lines small.
@@ -135,15 +135,16 @@ impl Canvas {
         if corners.iter().flatten().any(|c| !c.is_finite()) {
             return;
         }
-        let range = |k: usize, low: usize, high: usize| {
+        // No corners at all give an empty range.
+        let clip = self.clip;
+        let range = |k: usize| {
             let least = corners.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
             let most = corners.iter().map(|c| c[k]).fold(f64::NEG_INFINITY, f64::max);
-            // Casts saturate, so no corners at all give an empty range.
-            (least.floor() as usize).max(low)..(most.ceil().max(0.0) as usize).min(high)
+            pixels(least, most, clip[k], clip[k + 2])
         };
         let at = |pixel: usize, i: usize| pixel as f64 + (i as f64 + 0.5) / SAMPLES as f64;
-        for y in range(1, self.clip[1], self.clip[3]) {
-            for x in range(0, self.clip[0], self.clip[2]) {
+        for y in range(1) {
+            for x in range(0) {
                 let samples = (0..SAMPLES * SAMPLES).map(|i| [at(x, i % SAMPLES), at(y, i / SAMPLES)]);
                 let inside = samples.filter(|p| contains(corners, *p)).count();
                 self.blend(y * self.width + x, colour, inside as f32 / (SAMPLES * SAMPLES) as f32);
@@ -174,19 +175,9 @@ impl Canvas {
         self.ink(style.colour, 1.0);
     }
 
-    /// Text turned about its anchor on the baseline by an angle in radians, clockwise on the screen.
-    pub fn text_rotated(&mut self, at: [f64; 2], angle: f64, text: &str, style: &TextStyle) {
-        self.rotated_strokes(at, angle, text, style, 0.0);
-        self.ink(style.colour, 1.0);
-    }
-
-    /// A rim of `rim_px` around the text that [`Canvas::text_rotated`] draws, to lift it from what lies under it.
-    pub fn text_halo(&mut self, at: [f64; 2], angle: f64, text: &str, style: &TextStyle, rim_px: f64) {
-        self.rotated_strokes(at, angle, text, style, 2.0 * rim_px);
-        self.ink(style.colour, 1.0);
-    }
-
-    fn rotated_strokes(&mut self, at: [f64; 2], angle: f64, text: &str, style: &TextStyle, extra_px: f64) {
+    /// Text turned about its anchor on the baseline by an angle in radians, clockwise on the screen. Strokes wider by two rims
+    /// lift text that is drawn over them from what lies under it.
+    pub fn text_rotated(&mut self, at: [f64; 2], angle: f64, text: &str, style: &TextStyle, rim_px: f64) {
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let shift = font::width_px(text, style.size_px, false) * style.anchor.share();
         for stroke in font::strokes(text, style.size_px, false) {
@@ -195,8 +186,9 @@ impl Canvas {
                 [at[0] + x * cos - y * sin, at[1] + x * sin + y * cos]
             };
             let points: Vec<_> = stroke.points.iter().map(place).collect();
-            self.cover_chain(&points, stroke.width_px * style.weight + extra_px);
+            self.cover_chain(&points, stroke.width_px * style.weight + 2.0 * rim_px);
         }
+        self.ink(style.colour, 1.0);
     }
 
     /// 8-bit sRGB bytes, three a pixel, rows from the top.
@@ -255,15 +247,11 @@ impl Canvas {
         let half = 0.5 * width_px;
         let footprint = Footprint::across(from, to);
         let reach = half + footprint.half_width();
-        let range = |a: f64, b: f64, low: usize, high: usize| {
-            // Casts saturate: whatever lies left of the picture becomes 0.
-            let first = ((a.min(b) - reach).floor() as usize).max(low);
-            (first, ((a.max(b) + reach).ceil().max(0.0) as usize).min(high))
+        let range = |k: usize, clip: [usize; 4]| {
+            pixels(from[k].min(to[k]) - reach, from[k].max(to[k]) + reach, clip[k], clip[k + 2])
         };
-        let (x0, x1) = range(from[0], to[0], self.clip[0], self.clip[2]);
-        let (y0, y1) = range(from[1], to[1], self.clip[1], self.clip[3]);
-        for y in y0..y1 {
-            for x in x0..x1 {
+        for y in range(1, self.clip) {
+            for x in range(0, self.clip) {
                 let d = distance_to_segment([x as f64 + 0.5, y as f64 + 0.5], from, to);
                 let cover = (footprint.below(d + half) - footprint.below(d - half)) as f32;
                 let index = y * self.width + x;

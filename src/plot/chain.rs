@@ -6,6 +6,11 @@ pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (dx * dx + dy * dy).sqrt()
 }
 
+/// The point at a share of the way from one to another.
+pub fn along(from: [f64; 2], to: [f64; 2], share: f64) -> [f64; 2] {
+    [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share]
+}
+
 /// The length of a chain.
 pub fn length(points: &[[f64; 2]]) -> f64 {
     points.windows(2).map(|p| distance(p[0], p[1])).sum()
@@ -15,12 +20,8 @@ pub fn length(points: &[[f64; 2]]) -> f64 {
 pub fn distance_to_segment(p: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let square = dx * dx + dy * dy;
-    let along = if square > 0.0 {
-        (((p[0] - from[0]) * dx + (p[1] - from[1]) * dy) / square).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    distance(p, [from[0] + along * dx, from[1] + along * dy])
+    let share = if square > 0.0 { ((p[0] - from[0]) * dx + (p[1] - from[1]) * dy) / square } else { 0.0 };
+    distance(p, along(from, to, share.clamp(0.0, 1.0)))
 }
 
 /// Whether a ray from the point to the right crosses the polygon's outline an odd number of times.
@@ -51,8 +52,7 @@ pub fn dashes(points: &[[f64; 2]], [on, off]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
         let (mut from, to) = (pair[0], pair[1]);
         let mut length = distance(from, to);
         while length > left && left > 0.0 {
-            let share = left / length;
-            from = [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share];
+            from = along(from, to, left / length);
             piece.push(from);
             if inked {
                 pieces.push(std::mem::take(&mut piece));

@@ -1,5 +1,7 @@
 //! What part of a pixel lies under a stroke or a rectangle.
 
+use std::ops::Range;
+
 use super::chain::distance;
 
 /// A pixel square seen along a line: a trapezium, the convolution of the two sides' projections. Its integral gives the
@@ -41,7 +43,11 @@ impl Footprint {
 
 /// Pixels of [low, high) that the interval from `a` to `b` touches, each with the share it covers.
 pub fn covered(a: f64, b: f64, low: usize, high: usize) -> Vec<(usize, f64)> {
-    let first = (a.floor() as usize).max(low);
-    let last = (b.ceil().max(0.0) as usize).min(high);
-    (first..last).map(|i| (i, (b.min(i as f64 + 1.0) - a.max(i as f64)).clamp(0.0, 1.0))).collect()
+    pixels(a, b, low, high).map(|i| (i, (b.min(i as f64 + 1.0) - a.max(i as f64)).clamp(0.0, 1.0))).collect()
+}
+
+/// Pixels of [low, high) that the interval from `a` to `b` touches. Casts saturate: whatever lies left of the picture becomes 0,
+/// and an interval without end or beginning is empty or the whole.
+pub fn pixels(a: f64, b: f64, low: usize, high: usize) -> Range<usize> {
+    (a.floor() as usize).max(low)..(b.ceil().max(0.0) as usize).min(high)
 }

@@ -150,14 +150,8 @@ impl Drawing {
 }
 
 fn draw_chain(canvas: &mut Canvas, points: &[[f64; 2]], pen: &Pen) {
-    match pen.dash_px {
-        None => canvas.polyline(points, pen.width_px, pen.colour, 1.0),
-        Some(dash) => {
-            for piece in dashes(points, dash) {
-                canvas.polyline(&piece, pen.width_px, pen.colour, 1.0);
-            }
-        }
-    }
+    let pieces = pen.dash_px.map_or_else(|| vec![points.to_vec()], |dash| dashes(points, dash));
+    pieces.iter().for_each(|piece| canvas.polyline(piece, pen.width_px, pen.colour, 1.0));
 }
 
 fn svg_of(shape: &Shape) -> String {
@@ -228,21 +222,10 @@ fn hex(colour: Colour) -> String {
 
 /// Text for an XML document; characters XML does not allow become U+FFFD.
 pub fn escaped(text: &str) -> String {
-    let mut result = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => result.push_str("&amp;"),
-            '<' => result.push_str("&lt;"),
-            '>' => result.push_str("&gt;"),
-            '"' => result.push_str("&quot;"),
-            '\'' => result.push_str("&#39;"),
-            '\u{0}'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => {
-                result.push('\u{fffd}');
-            }
-            other => result.push(other),
-        }
-    }
-    result
+    let is_allowed = |c: char| !matches!(c, '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}');
+    let text: String = text.chars().map(|c| if is_allowed(c) { c } else { '\u{fffd}' }).collect();
+    let entities = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;"), ('"', "&quot;"), ('\'', "&#39;")];
+    entities.iter().fold(text, |text, (c, entity)| text.replace(*c, entity))
 }
 
 #[cfg(test)]

@@ -141,29 +141,13 @@ fn lookup(c: char) -> (f64, &'static [Stroke]) {
         .unwrap_or((7.0, &[L(&[(0.0, 0.0), (7.0, 0.0), (7.0, 14.0), (0.0, 14.0), (0.0, 0.0)])]))
 }
 
-/// The letter under the commonest accents, so that names in labels stay readable.
+/// Letters with the commonest accents, and typographers' signs; in [`PLAIN`] what is drawn instead of each.
+const ACCENTED: &str = "àáâãäåèéêëìíîïòóôõöøùúûüÀÁÂÃÄÅÈÉÊËÌÍÎÏÒÓÔÕÖØÙÚÛÜçÇñÑ\u{a0}\t\u{2018}\u{2019}\u{201c}\u{201d}\u{2014}\u{2212}";
+const PLAIN: &str = "aaaaaaeeeeiiiioooooouuuuAAAAAAEEEEIIIIOOOOOOUUUUcCnN  ''\"\"––";
+
+/// The letter under an accent, so that names in labels stay readable.
 fn plain_letter(c: char) -> char {
-    match c {
-        'à'..='å' => 'a',
-        'è'..='ë' => 'e',
-        'ì'..='ï' => 'i',
-        'ò'..='ö' | 'ø' => 'o',
-        'ù'..='ü' => 'u',
-        'À'..='Å' => 'A',
-        'È'..='Ë' => 'E',
-        'Ì'..='Ï' => 'I',
-        'Ò'..='Ö' | 'Ø' => 'O',
-        'Ù'..='Ü' => 'U',
-        'ç' => 'c',
-        'Ç' => 'C',
-        'ñ' => 'n',
-        'Ñ' => 'N',
-        '\u{a0}' | '\t' => ' ',
-        '\u{2018}' | '\u{2019}' => '\'',
-        '\u{201c}' | '\u{201d}' => '"',
-        '\u{2014}' | '\u{2212}' => '–',
-        other => other,
-    }
+    ACCENTED.chars().zip(PLAIN.chars()).find(|(accented, _)| *accented == c).map_or(c, |(_, plain)| plain)
 }
 
 #[cfg(test)]

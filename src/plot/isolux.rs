@@ -2,7 +2,7 @@
 
 use crate::report::colour::scale::{Axis, Tick};
 
-use super::chain::{distance, length};
+use super::chain::{along, distance, length};
 use super::contour::level_lines;
 use super::font;
 use super::resample::{area_average, gaussian};
@@ -123,24 +123,19 @@ fn labelled(lines: Vec<Line>, display: [usize; 2]) -> Vec<IsoluxLine> {
     for index in order {
         let width = font::width_px(&lines[index].0.label, LABEL_SIZE_PX, false) + 8.0;
         if let Some((from, to)) = best_window(&even, index, width, display, &taken) {
-            let chord = [even[index][from], even[index][to]];
-            let label = label_on(chord);
+            let label = label_on([even[index][from], even[index][to]]);
             taken.push((label.centre, width));
             labels[index] = Some((from, to, label));
         }
     }
-    lines
-        .into_iter()
-        .zip(even)
-        .zip(labels)
-        .map(|(((tick, points), even), label)| match label {
-            None => IsoluxLine { tick, pieces: vec![points], label: None },
-            Some((from, to, label)) => {
-                let pieces = vec![even[..=from].to_vec(), even[to..].to_vec()];
-                IsoluxLine { tick, pieces, label: Some(label) }
-            }
-        })
-        .collect()
+    let lines = lines.into_iter().zip(even).zip(labels).map(|(((tick, points), even), window)| {
+        let pieces = match window {
+            None => vec![points],
+            Some((from, to, _)) => vec![even[..=from].to_vec(), even[to..].to_vec()],
+        };
+        IsoluxLine { tick, pieces, label: window.map(|(_, _, label)| label) }
+    });
+    lines.collect()
 }
 
 /// The label that lies on a chord, readable from below or from the right.
@@ -211,11 +206,7 @@ fn evenly(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     for pair in points.windows(2) {
         let step = distance(pair[0], pair[1]);
         while next <= step && step > 0.0 {
-            let share = next / step;
-            even.push([
-                pair[0][0] + share * (pair[1][0] - pair[0][0]),
-                pair[0][1] + share * (pair[1][1] - pair[0][1]),
-            ]);
+            even.push(along(pair[0], pair[1], next / step));
             next += STEP_PX;
         }
         next -= step;

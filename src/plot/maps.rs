@@ -36,6 +36,6 @@ pub fn write_png(
         isolux: true,
         footer: vec![flux, format!("{} photons, {error}", grouped(outcome.photons))],
     };
-    picture.write_png(path)?;
+    picture.render().write_png(path)?;
     Ok(true)
 }

@@ -11,6 +11,7 @@ mod resample;
 mod contour;
 pub mod canvas;
 pub mod drawing;
+mod disc;
 mod page;
 mod isolux;
 mod false_colour;

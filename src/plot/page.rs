@@ -1,32 +1,20 @@
-//! What polar diagrams have in common: the page, its rings and rays, title, legend and lines of text.
+//! The page of a polar diagram: title, legend and lines of text.
 
 use std::path::Path;
 
 use crate::report::colour::Colour;
-use crate::report::colour::scale::linear_ticks;
 
-use super::canvas::{Anchor, TextStyle};
+use super::canvas::TextStyle;
 use super::drawing::{Drawing, Pen, Shape, ink, polyline, text};
 use super::font;
 
 pub const WIDTH: usize = 640;
-/// Of the outer ring.
-pub const RADIUS: f64 = 236.0;
 pub const MARGIN: f64 = 24.0;
-pub const TICK_SIZE: f64 = 12.0;
-pub const RAY_STEP_DEG: usize = 15;
 const TITLE_SIZE: f64 = 18.0;
 const TEXT_SIZE: f64 = 13.0;
 const LINE_HEIGHT: f64 = 20.0;
-/// Most rings there are.
-const RINGS: usize = 7;
 /// Width between the margins.
 const ROOM: f64 = WIDTH as f64 - 2.0 * MARGIN;
-
-/// The pens of the grid: of most rings and rays, and of those that bound the diagram.
-pub fn grid_pens() -> [Pen; 2] {
-    [216, 140].map(|grey| Pen::solid(1.0, Colour::grey(grey)))
-}
 
 /// The pen of a curve: one of four colours.
 pub fn curve_pen(index: usize, dashed: bool) -> Pen {
@@ -35,38 +23,20 @@ pub fn curve_pen(index: usize, dashed: bool) -> Pen {
     Pen { width_px: 2.2, colour: Colour::srgb(r, g, b), dash_px: dashed.then_some([8.0, 5.5]) }
 }
 
-/// Round values and labels of the rings up to one above `max`, from the inside, and the value of the outer one.
-pub fn round_rings(max: f64) -> (Vec<(f64, String)>, f64) {
-    // Subnormal values have no round numbers.
-    let max = if max > f64::MIN_POSITIVE / f64::EPSILON { max } else { 1.0 };
-    let step = linear_ticks(0.0, max, RINGS).get(1).map_or(max, |tick| tick.value);
-    let ticks = linear_ticks(0.0, (max / step).ceil() * step, RINGS).into_iter().skip(1);
-    let rings: Vec<(f64, String)> = ticks.map(|tick| (tick.value, tick.label)).collect();
-    let outer = rings.last().map_or(max, |ring| ring.0).max(max);
-    (rings, outer)
+/// Angles from `-reach_deg` to `reach_deg`, so many a degree, and among them the table's own: where curves have their points.
+pub fn curve_angles(reach_deg: i32, per_degree: i32, own_deg: impl Iterator<Item = f64>) -> Vec<f64> {
+    let steps = reach_deg * per_degree;
+    let mut angles: Vec<f64> = (-steps..=steps).map(|i| f64::from(i) / f64::from(per_degree)).collect();
+    angles.extend(own_deg.filter(|a| a.abs() <= f64::from(reach_deg)));
+    angles.sort_by(f64::total_cmp);
+    angles.dedup();
+    angles
 }
 
 /// The title at the top of the page.
-pub fn draw_title(shapes: &mut Vec<Shape>, title: &str) {
+pub fn title(title: &str) -> Shape {
     let style = TextStyle::new(fitting(title, TITLE_SIZE), Colour::grey(20)).weighing(1.25);
-    shapes.push(text([MARGIN, MARGIN + 16.0], title, style));
-}
-
-/// The number on a ring at `x`, its right or left end there; on white where something may lie under it.
-pub fn draw_ring_label(
-    shapes: &mut Vec<Shape>,
-    [x, y]: [f64; 2],
-    label: &str,
-    anchor: Anchor,
-    on_white: bool,
-) {
-    if on_white {
-        let width = font::width_px(label, TICK_SIZE, true);
-        let left = if anchor == Anchor::End { x - width } else { x };
-        let area = [left - 1.0, y - 10.0, width + 2.0, 12.0];
-        shapes.push(Shape::Rect { area, colour: Colour::WHITE });
-    }
-    shapes.push(text([x, y], label, TextStyle::new(TICK_SIZE, Colour::grey(90)).anchored(anchor)));
+    text([MARGIN, MARGIN + 16.0], title, style)
 }
 
 /// The whole page, from a diagram that reaches down to `foot`: a line of each curve's kind and its name, as many in a row as

@@ -54,7 +54,7 @@ pub fn write_luminance_png<const C: usize>(
             error_line(film, &values)
         )],
     };
-    picture.write_png(path)
+    picture.render().write_png(path)
 }
 
 /// Root mean square of the standard error, of the mean luminance.

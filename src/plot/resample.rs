@@ -1,13 +1,10 @@
 //! Maps at another resolution, and smoothed maps. NaN and infinities are cells without a value: they take no part in
 //! an average, and where nothing else is there the result is NaN.
 
-/// Area-weighted average of a `width` x `height` map on `new_width` x `new_height` cells over the same rectangle.
+/// Area-weighted average of a `width` x `height` map on as many cells as `new` says, over the same rectangle.
 /// At a multiple of the resolution this is the nearest neighbour.
-pub fn area_average(
-    values: &[f64],
-    [width, height]: [usize; 2],
-    [new_width, new_height]: [usize; 2],
-) -> Vec<f64> {
+pub fn area_average(values: &[f64], [width, height]: [usize; 2], new: [usize; 2]) -> Vec<f64> {
+    let [new_width, new_height] = new;
     let columns: Vec<_> = (0..new_width).map(|i| overlaps(i, width, new_width)).collect();
     let mut result = Vec::with_capacity(new_width * new_height);
     // Magnified rows repeat; the last one made is kept.

@@ -24,29 +24,23 @@ pub fn attributes(
     text("caustix.unit.hits", "photons");
     text("caustix.receiver", &receiver.name);
     text("caustix.surface", &scene.geometry.surfaces()[receiver.surface.0 as usize].name);
-    text(
-        "caustix.side",
-        match receiver.side {
-            ReceiverSide::Front => "front",
-            ReceiverSide::Back => "back",
-            ReceiverSide::Both => "both",
-        },
-    );
-    text(
-        "caustix.events",
-        match receiver.events {
-            ReceiverEvents::All => "all",
-            ReceiverEvents::Direct => "direct",
-            ReceiverEvents::Indirect => "indirect",
-        },
-    );
-    text(
-        "caustix.layout",
-        match receiver.cells {
-            Cells::Grid { .. } => "row 0, column 0 is the (u = 0, v = 1) corner; u to the right",
-            Cells::Faces { .. } => "face number = row * width + column; NaN beyond the last face",
-        },
-    );
+    let side = match receiver.side {
+        ReceiverSide::Front => "front",
+        ReceiverSide::Back => "back",
+        ReceiverSide::Both => "both",
+    };
+    let events = match receiver.events {
+        ReceiverEvents::All => "all",
+        ReceiverEvents::Direct => "direct",
+        ReceiverEvents::Indirect => "indirect",
+    };
+    let layout = match receiver.cells {
+        Cells::Grid { .. } => "row 0, column 0 is the (u = 0, v = 1) corner; u to the right",
+        Cells::Faces { .. } => "face number = row * width + column; NaN beyond the last face",
+    };
+    text("caustix.side", side);
+    text("caustix.events", events);
+    text("caustix.layout", layout);
     if let Some(why) = why_no_error(outcome) {
         text("caustix.standard_error_absent", why);
     }

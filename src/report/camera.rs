@@ -35,23 +35,15 @@ impl CameraReport {
     }
 
     fn write(&self, out: &mut String) -> std::fmt::Result {
-        let (picture, [columns, rows]) = (&self.picture, self.pixels);
-        writeln!(
-            out,
-            "\ncamera: {columns} x {rows} pixels, {} samples each, method {}",
-            self.samples,
-            picture.method.word()
-        )?;
-        let (kept, of) = (grouped(picture.photons_kept), grouped(picture.photons));
+        let (picture, [columns, rows], samples) = (&self.picture, self.pixels, self.samples);
+        let method = picture.method.word();
+        writeln!(out, "\ncamera: {columns} x {rows} pixels, {samples} samples each, method {method}")?;
+        let (kept, of, passes) = (grouped(picture.photons_kept), grouped(picture.photons), picture.passes);
         match &picture.bandwidth {
-            Some([caustic, diffuse]) => {
-                let passes = if picture.passes == 1 { "pass" } else { "passes" };
-                writeln!(
-                    out,
-                    "  photons      {kept} arrivals kept, of {of} photons, in {} {passes}",
-                    picture.passes
-                )?;
-                let (caustic, diffuse) = (described(caustic), described(diffuse));
+            Some(bandwidth) => {
+                let [caustic, diffuse] = bandwidth.each_ref().map(described);
+                let passes = format!("{passes} {}", if passes == 1 { "pass" } else { "passes" });
+                writeln!(out, "  photons      {kept} arrivals kept, of {of} photons, in {passes}")?;
                 writeln!(out, "  bandwidth    caustics {caustic}; light scattered before {diffuse}")?;
             }
             None => {
@@ -59,19 +51,13 @@ impl CameraReport {
                 writeln!(out, "  missing      what is scattered last and seen by mirror or through glass")?;
             }
         }
-        let percent = |p: Option<f64>| p.map_or("unknown".to_string(), |p| format!("{} %", rounded(p, 2)));
-        writeln!(
-            out,
-            "  error        standard error {}, bias {} of a pixel (medians)",
-            percent(picture.cost.median_standard_error_percent),
-            percent(picture.cost.median_bias_percent)
-        )?;
+        let [error, bias] = [picture.cost.median_standard_error_percent, picture.cost.median_bias_percent]
+            .map(|p| p.map_or("unknown".to_string(), |p| format!("{} %", rounded(p, 2))));
+        writeln!(out, "  error        standard error {error}, bias {bias} of a pixel (medians)")?;
+        let endless = "eye paths ended by the guard against endless ones: their light is missing";
         for (number, what) in [
             (picture.pixels_unseen, "pixels not seen before the interrupt: black, their error unknown"),
-            (
-                picture.eye_paths_killed,
-                "eye paths ended by the guard against endless ones: their light is missing",
-            ),
+            (picture.eye_paths_killed, endless),
             (picture.splats_cut, "splats cut: the pinhole all but touches a surface"),
         ] {
             if number > 0 {

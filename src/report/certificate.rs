@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::lab::certificate::{Certificate, PointKind, TestName};
+use crate::lab::certificate::{Cells, Certificate, CoordinatesUsed, Discrepancy, PointKind, TestName};
 
-use super::numbers::grouped;
+use super::numbers::{grouped, written};
 
 /// Everything that `--json` says. Names are a contract: they are only added to.
 #[derive(Debug, Serialize)]
@@ -38,67 +38,61 @@ pub struct CertificateReport {
 impl CertificateReport {
     /// The certificate for a terminal.
     pub fn text(&self) -> String {
+        written(|out| self.write(out))
+    }
+
+    fn write(&self, out: &mut String) -> std::fmt::Result {
         let certificate = &self.certificate;
-        let mut out = String::new();
-        let mut line = |name: &str, value: String| {
-            let _infallible = writeln!(out, "{name:<18}{value}");
+        let Cells { table, zero, pooled } = certificate.cells;
+        let Discrepancy { ratio, l2_star, random, .. } = certificate.discrepancy;
+        let CoordinatesUsed { mean, max } = certificate.coordinates;
+        let more = match certificate.replicates {
+            0 => String::new(),
+            n => {
+                let each = grouped(certificate.replicate_draws / u64::from(n));
+                format!("; for the cell means {n} x {each} more")
+            }
         };
-        line("file", format!("{}, type {}", self.file, self.photometric_type));
-        line("variant", format!("{}: {}", self.variant, self.description));
-        let mut samples = format!("{}, seed {}", grouped(certificate.draws), self.seed);
-        if certificate.replicates > 0 {
-            let each = grouped(certificate.replicate_draws / u64::from(certificate.replicates));
-            let _infallible =
-                write!(samples, "; for the cell means {} x {each} more", certificate.replicates);
-        }
-        line("samples", samples);
-        let cells = certificate.cells;
         let dark = match certificate.draws_in_zero_cells {
             0 => "dark and empty".into(),
             n => format!("dark, {} samples in them", grouped(n)),
         };
-        line("table", format!("{} cells, {} {dark}; {} pools", cells.table, cells.zero, cells.pooled));
-        let used = certificate.coordinates;
-        line("coordinates", format!("{:.4} a sample, at most {}", used.mean, used.max));
         let points = match self.points_per_sample {
             1.0 => String::new(),
             more => format!(", {more:.3} points of the sequence"),
         };
-        line("time", format!("{:.0} ns a sample{points}", self.ns_per_sample));
-        let d = certificate.discrepancy;
-        line(
-            "discrepancy",
-            format!(
-                "{:.3} of that of random points: L2-star {:.2e}, random {:.2e}",
-                d.ratio, d.l2_star, d.random
-            ),
-        );
-        out.push('\n');
-        let _infallible =
-            writeln!(out, "{:<18}{:>12} {:>8} {:>9} {:>9}", "test", "statistic", "degrees", "p", "corrected");
+        writeln!(out, "file              {}, type {}", self.file, self.photometric_type)?;
+        writeln!(out, "variant           {}: {}", self.variant, self.description)?;
+        writeln!(out, "samples           {}, seed {}{more}", grouped(certificate.draws), self.seed)?;
+        writeln!(out, "table             {table} cells, {zero} {dark}; {pooled} pools")?;
+        writeln!(out, "coordinates       {mean:.4} a sample, at most {max}")?;
+        writeln!(out, "time              {:.0} ns a sample{points}", self.ns_per_sample)?;
+        writeln!(
+            out,
+            "discrepancy       {ratio:.3} of that of random points: L2-star {l2_star:.2e}, random {random:.2e}"
+        )?;
+        writeln!(out, "\ntest                 statistic  degrees         p corrected")?;
+        let verdict = |passed: bool| if passed { "passed" } else { "FAILED" };
         for test in &certificate.tests {
             let degrees = test.degrees.map(|d| d.to_string()).unwrap_or_default();
-            let statistic = statistic(test.name, test.statistic);
-            let verdict = if test.passed { "passed" } else { "FAILED" };
+            let (name, statistic) = (test.name, statistic(test.name, test.statistic));
             let (p, corrected) = (chance(test.p_value), chance(test.p_corrected));
-            let what = test.what;
-            let _infallible = writeln!(
-                out,
-                "{:<18}{statistic:>12} {degrees:>8} {p:>9} {corrected:>9}  {verdict}  {what}",
-                test.name
-            );
+            let (verdict, what) = (verdict(test.passed), test.what);
+            writeln!(out, "{name:<18}{statistic:>12} {degrees:>8} {p:>9} {corrected:>9}  {verdict}  {what}")?;
         }
-        out.push('\n');
-        out.push_str(match certificate.points {
-        PointKind::Random => "Expected is the file's own candela, integrated by quadrature. The p-values hold.\n",
-        PointKind::LowDiscrepancy => {
-            "Expected is the file's own candela, integrated by quadrature. The points are no random points: p-values of\n\
-             counts, KS and discrepancy are what random points would do, an upper bound; those of cell means hold.\n"
-        }
-    });
-        let verdict = if certificate.passed { "passed" } else { "FAILED" };
-        let _infallible = writeln!(out, "certificate       {verdict}");
-        out
+        writeln!(
+            out,
+            "\n{}",
+            match certificate.points {
+                PointKind::Random =>
+                    "Expected is the file's own candela, integrated by quadrature. The p-values hold.",
+                PointKind::LowDiscrepancy => {
+                    "Expected is the file's own candela, integrated by quadrature. The points are no random points: p-values of\n\
+                 counts, KS and discrepancy are what random points would do, an upper bound; those of cell means hold."
+                }
+            }
+        )?;
+        writeln!(out, "certificate       {}", verdict(certificate.passed))
     }
 }
 

@@ -76,7 +76,11 @@ impl RunReport {
         let rejects = algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
-            scene: SceneReport::new(scene),
+            scene: SceneReport {
+                path: scene.identity.name.clone(),
+                sha256: scene.identity.sha256.clone(),
+                files: scene.identity.files.iter().cloned().collect(),
+            },
             variant: algorithm.variant.name(),
             sequence: algorithm.sequence.name(),
             solver: (!rejects).then(|| algorithm.solver.name()),
@@ -96,17 +100,6 @@ pub struct SceneReport {
     pub sha256: String,
     /// SHA-256 of the files it names, by the path written there.
     pub files: BTreeMap<String, String>,
-}
-
-impl SceneReport {
-    /// Of a scene.
-    pub fn new(scene: &Scene) -> Self {
-        Self {
-            path: scene.identity.name.clone(),
-            sha256: scene.identity.sha256.clone(),
-            files: scene.identity.files.iter().cloned().collect(),
-        }
-    }
 }
 
 /// Times of a report.
@@ -200,6 +193,7 @@ impl<'a> Report<'a> {
             Accounts::new(scene, absorbed, of(outcome.escaped_lm()), of(outcome.killed_lm()))
         };
         let photons = outcome.photons as f64;
+        let receivers = scene.receivers.iter().zip(statistics).zip(files);
         Self {
             run: RunReport::new(scene, &outcome.plan, outcome.photons),
             photons_planned: outcome.plan.photons(),
@@ -224,18 +218,14 @@ impl<'a> Report<'a> {
                 mean: outcome.census.dimension_mean(),
                 max: outcome.census.dimension_max,
                 histogram: outcome.census.dimension_histogram.clone(),
-                mean_by_purpose: Purpose::ALL
-                    .iter()
-                    .map(|p| (p.label(), outcome.census.drawn_for[*p as usize] as f64 / photons))
+                mean_by_purpose: Purpose::LABELS
+                    .into_iter()
+                    .zip(outcome.census.drawn_for.map(|drawn| drawn as f64 / photons))
                     .collect(),
             },
             exceptions: outcome.census.exceptions.clone(),
-            receivers: scene
-                .receivers
-                .iter()
-                .zip(statistics)
-                .zip(files)
-                .map(|((receiver, numbers), files)| ReceiverReport { name: &receiver.name, numbers, files })
+            receivers: receivers
+                .map(|((r, numbers), files)| ReceiverReport { name: &r.name, numbers, files })
                 .collect(),
             camera: None,
             stopped_by: match outcome.stopped_by {

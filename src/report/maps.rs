@@ -52,13 +52,8 @@ pub fn write_exr(
         Channel { name: "standard_error", data: Data::F32(&error) },
         Channel { name: "hits", data: Data::U32(&hits) },
     ];
-    write_maps(
-        path,
-        [width, height],
-        &channels,
-        &attributes(scene, outcome, receiver, statistics),
-        Light::Other,
-    )
+    let attributes = attributes(scene, outcome, receiver, statistics);
+    write_maps(path, [width, height], &channels, &attributes, Light::Other)
 }
 
 /// Writes a receiver's faces as CSV, one row a face: number, centroid (m), area (m2), illuminance and standard error (lx,

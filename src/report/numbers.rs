@@ -14,17 +14,15 @@ pub fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
     match error {
         Some(e) if e > 0.0 && value != 0.0 => {
             let magnitude = libm::floor(libm::log10(value.abs().max(e)));
-            if !(-5.0..9.0).contains(&magnitude) {
-                // So many digits that two of the error show, both numbers in one power of ten.
-                let power = libm::exp10(magnitude);
-                let decimals = (1.0 + magnitude - libm::floor(libm::log10(e))).clamp(0.0, 12.0) as usize;
-                let (v, s) = (value / power, e / power);
-                let percent = rounded(100.0 * e / value.abs(), 2);
-                return format!("({v:.decimals$} +- {s:.decimals$})e{magnitude} {unit} ({percent} %)");
-            }
+            let is_plain = (-5.0..9.0).contains(&magnitude);
+            // Else both numbers are in one power of ten.
+            let exponent = if is_plain { 0.0 } else { magnitude };
+            let power = libm::exp10(exponent);
             // Decimals so that two digits of the error show.
-            let decimals = (1.0 - libm::floor(libm::log10(e))).clamp(0.0, 12.0) as usize;
-            format!("{value:.decimals$} +- {e:.decimals$} {unit} ({} %)", rounded(100.0 * e / value.abs(), 2))
+            let decimals = (1.0 + exponent - libm::floor(libm::log10(e))).clamp(0.0, 12.0) as usize;
+            let both = format!("{:.decimals$} +- {:.decimals$}", value / power, e / power);
+            let both = if is_plain { both } else { format!("({both})e{magnitude}") };
+            format!("{both} {unit} ({} %)", rounded(100.0 * e / value.abs(), 2))
         }
         Some(_) => format!("{} +- 0 {unit}", digits(value)),
         None => format!("{} {unit}", digits(value)),
@@ -86,12 +84,17 @@ pub fn bare(value: Option<f64>) -> String {
 }
 
 /// A list as people write it: "a, b and c".
-pub fn list(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+pub fn list(items: impl IntoIterator<Item = String>) -> String {
+    match items.into_iter().collect::<Vec<_>>().as_slice() {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        alone => alone.concat(),
     }
+}
+
+/// A line of a Markdown table.
+pub fn piped(cells: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let cell = |c: &str| if c.is_empty() { " |".to_owned() } else { format!(" {c} |") };
+    cells.into_iter().fold("|".to_owned(), |line, c| line + &cell(c.as_ref())) + "\n"
 }
 
 /// Text from a file: control characters must not reach a terminal.
@@ -140,8 +143,9 @@ mod tests {
     #[test]
     fn lists_and_foreign_text_read_well() {
         let items = ["a", "b", "c"].map(String::from);
-        assert_eq!(list(&items), "a, b and c");
-        assert_eq!(list(&items[..2]), "a and b");
+        assert_eq!(list(items.clone()), "a, b and c");
+        assert_eq!(list(items.into_iter().take(2)), "a and b");
+        assert_eq!((list(["a".into()]), list([])), ("a".into(), "".into()));
         assert_eq!(printable("a\u{1b}[31mb"), "a [31mb");
         assert_eq!(
             (bare(Some(0.25)), bare(Some(f64::NAN)), bare(None)),

@@ -36,18 +36,15 @@ pub fn write_exr<const C: usize>(
         let found = format!("{pixels} pixels of a picture of {width} x {height}");
         return Err(Diagnostic::new(Kind::Range, found, "one value, error and bias for each pixel"));
     }
-    let floats = |values: &mut dyn Iterator<Item = f64>| -> Vec<f32> { values.map(|v| v as f32).collect() };
-    let channel = |c: usize| floats(&mut film.value.iter().map(|v| v[c]));
-    let colours: Vec<Vec<f32>> = (0..C).map(channel).collect();
     let names: &[&str] = if C == 1 { &["Y"] } else { &["R", "G", "B"] };
-    let error = floats(&mut film.standard_error.iter().copied());
-    let bias = floats(&mut film.bias.iter().copied());
-    let mut channels: Vec<Channel<'_>> =
-        names.iter().zip(&colours).map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
-    channels.push(Channel { name: "standard_error", data: Data::F32(&error) });
-    channels.push(Channel { name: "bias", data: Data::F32(&bias) });
+    let colour = |c: usize| film.value.iter().map(|v| v[c] as f32).collect();
+    let mut planes: Vec<(&str, Vec<f32>)> = names.iter().enumerate().map(|(c, n)| (*n, colour(c))).collect();
+    planes.push(("standard_error", film.standard_error.iter().map(|e| *e as f32).collect()));
+    planes.push(("bias", film.bias.iter().map(|b| *b as f32).collect()));
+    let channels: Vec<Channel<'_>> =
+        planes.iter().map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
     let attributes = [attributes, &picture_attributes(&tone(spec, film))].concat();
-    write_maps(path, film.pixels.map(|n| n as usize), &channels, &attributes, Light::Luminance)
+    write_maps(path, [width, height], &channels, &attributes, Light::Luminance)
 }
 
 fn picture_attributes(tone: &Tone) -> Vec<(String, Value)> {

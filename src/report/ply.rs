@@ -56,17 +56,15 @@ pub fn write_ply(
 }
 
 fn header(mesh: &Mesh, comments: &[String]) -> String {
-    let mut text = String::from("ply\nformat binary_little_endian 1.0\n");
-    for comment in comments {
-        text += &format!("comment {comment}\n");
-    }
-    text += &format!("element vertex {}\n", mesh.vertices().len());
-    text += "property double x\nproperty double y\nproperty double z\n";
-    text += &format!("element face {}\n", mesh.triangles().len());
-    text += "property list uchar int vertex_indices\n";
-    text += "property float quality\nproperty float illuminance_lx\nproperty float standard_error_lx\n";
-    text += "property uint hits\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
-    text
+    let comments: String = comments.iter().map(|comment| format!("comment {comment}\n")).collect();
+    let (vertices, faces) = (mesh.vertices().len(), mesh.triangles().len());
+    format!(
+        "ply\nformat binary_little_endian 1.0\n{comments}\
+         element vertex {vertices}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {faces}\nproperty list uchar int vertex_indices\n\
+         property float quality\nproperty float illuminance_lx\nproperty float standard_error_lx\n\
+         property uint hits\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+    )
 }
 
 /// Corners, numbers and colour of one face.

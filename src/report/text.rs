@@ -1,8 +1,8 @@
 //! The printed summary of a run, for a lighting engineer.
 
-use std::fmt::Write;
+use std::fmt::{Result, Write};
 
-use crate::run::{Outcome, StoppedBy};
+use crate::run::{Estimate, Outcome, StoppedBy};
 use crate::scene::Scene;
 
 use super::numbers::{digits, grouped, rounded, with_error, written};
@@ -17,24 +17,19 @@ pub fn summary(
     total_s: f64,
 ) -> String {
     written(|out| {
-        let plan = &outcome.plan;
+        let (plan, photons, replicates) = (&outcome.plan, outcome.photons, outcome.replicates);
+        let each = grouped(photons / u64::from(replicates.max(1)));
+        let (variant, sequence) = (plan.algorithm().variant.name(), plan.algorithm().sequence.name());
         writeln!(out, "scene      {}", scene.identity.name)?;
         writeln!(
             out,
-            "photons    {} = {} replicates x {}; {}, {}, seed {}",
-            grouped(outcome.photons),
-            outcome.replicates,
-            grouped(outcome.photons / u64::from(outcome.replicates.max(1))),
-            plan.algorithm().variant.name(),
-            plan.algorithm().sequence.name(),
+            "photons    {} = {replicates} replicates x {each}; {variant}, {sequence}, seed {}",
+            grouped(photons),
             plan.seed()
         )?;
         if outcome.stopped_by == StoppedBy::Interrupt {
-            writeln!(
-                out,
-                "           stopped by an interrupt; {} photons were asked for",
-                grouped(plan.photons())
-            )?;
+            let asked = grouped(plan.photons());
+            writeln!(out, "           stopped by an interrupt; {asked} photons were asked for")?;
         }
         for ((receiver, s), files) in scene.receivers.iter().zip(statistics).zip(files) {
             write_receiver(out, &receiver.name, s, files)?;
@@ -43,41 +38,34 @@ pub fn summary(
         if let Some(why) = why_no_error(outcome) {
             writeln!(out, "\nno standard errors: {why}")?;
         }
+        let census = &outcome.census;
+        let speed = grouped((photons as f64 / outcome.trace_s.max(f64::MIN_POSITIVE)) as u64);
         writeln!(
             out,
-            "\ntime       {:.2} s tracing ({} photons/s), {:.2} s in all; {:.2} coordinates a photon, at most {}",
+            "\ntime       {:.2} s tracing ({speed} photons/s), {total_s:.2} s in all; {:.2} coordinates a photon, at most {}",
             outcome.trace_s,
-            grouped((outcome.photons as f64 / outcome.trace_s.max(f64::MIN_POSITIVE)) as u64),
-            total_s,
-            outcome.census.dimension_mean(),
-            outcome.census.dimension_max
+            census.dimension_mean(),
+            census.dimension_max
         )?;
-        let exceptions = &outcome.census.exceptions;
-        if exceptions.corrected_directions + exceptions.skipped_crossings > 0 {
+        let exceptions = &census.exceptions;
+        let [corrected, skipped, below] =
+            [exceptions.corrected_directions, exceptions.skipped_crossings, exceptions.below_horizon];
+        if corrected + skipped > 0 {
+            let (kept, repeated) = (grouped(corrected), grouped(skipped));
             writeln!(
                 out,
-                "exceptions {} directions kept on their side of a facet, {} repeated crossings skipped",
-                grouped(exceptions.corrected_directions),
-                grouped(exceptions.skipped_crossings)
+                "exceptions {kept} directions kept on their side of a facet, {repeated} repeated crossings skipped"
             )?;
         }
-        if exceptions.below_horizon > 0 {
-            writeln!(
-                out,
-                "horizon    {} photons sent below it by scattering tables, absorbed there",
-                grouped(exceptions.below_horizon)
-            )?;
+        if below > 0 {
+            let below = grouped(below);
+            writeln!(out, "horizon    {below} photons sent below it by scattering tables, absorbed there")?;
         }
         Ok(())
     })
 }
 
-fn write_receiver(
-    out: &mut String,
-    name: &str,
-    s: &ReceiverStatistics,
-    files: &[String],
-) -> std::fmt::Result {
+fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &[String]) -> Result {
     writeln!(out, "\nreceiver \"{name}\": {} cells, {} m2", grouped(s.cells as u64), digits(s.area_m2))?;
     writeln!(out, "  flux         {}", with_error(s.flux_lm, s.flux_standard_error_lm, "lm"))?;
     let mean_error = s.flux_standard_error_lm.map(|e| e / s.area_m2);
@@ -88,11 +76,8 @@ fn write_receiver(
         None => writeln!(out, "  uniformity   none: no light arrives")?,
     }
     if let Some(nrms) = s.expected_nrms {
-        writeln!(
-            out,
-            "  error        a cell is off by {} % of the mean (root mean square)",
-            rounded(100.0 * nrms, 3)
-        )?;
+        let nrms = rounded(100.0 * nrms, 3);
+        writeln!(out, "  error        a cell is off by {nrms} % of the mean (root mean square)")?;
     }
     if !files.is_empty() {
         writeln!(out, "  files        {}", files.join(", "))?;
@@ -100,13 +85,13 @@ fn write_receiver(
     Ok(())
 }
 
-fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> std::fmt::Result {
+fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> Result {
     let surfaces = scene.geometry.surfaces();
     let emitted = scene.emitters.flux_lm();
     let width = surfaces.iter().map(|s| s.name.chars().count() + 14).max().unwrap_or(0).max(22);
     writeln!(out, "\nwhere the light went")?;
     writeln!(out, "  {:<width$} {:>12} lm", "emitted", digits(emitted))?;
-    let mut line = |label: String, e: crate::run::Estimate| {
+    let mut line = |label: String, e: Estimate| {
         let share = 100.0 * e.value / emitted;
         let error = e.standard_error.map_or(String::new(), |se| format!(" +- {}", rounded(se, 2)));
         writeln!(out, "  {label:<width$} {:>12} lm{error}  ({share:.2} %)", digits(e.value))
@@ -120,10 +105,6 @@ fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> std::fmt:
     if outcome.ledger.killed > 0 {
         line("killed (endless walks)".into(), outcome.killed_lm())?;
     }
-    writeln!(
-        out,
-        "  balance: {} photons emitted, {} ended",
-        grouped(outcome.ledger.total_emitted()),
-        grouped(outcome.ledger.total_ended())
-    )
+    let [emitted, ended] = [outcome.ledger.total_emitted(), outcome.ledger.total_ended()].map(grouped);
+    writeln!(out, "  balance: {emitted} photons emitted, {ended} ended")
 }

@@ -24,12 +24,7 @@ impl Variant {
 
     /// The name in commands and files.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Mc => "mc",
-            Self::Qmc => "qmc",
-            Self::QmcInverse => "qmc-inverse",
-            Self::QmcInverseReuse => "qmc-inverse-reuse",
-        }
+        ["mc", "qmc", "qmc-inverse", "qmc-inverse-reuse"][self as usize]
     }
 
     /// The variant of this name.
@@ -102,28 +97,27 @@ impl Algorithm {
             Variant::from_name(name)
                 .ok_or_else(|| unknown(name, Variant::ALL.iter().map(|v| v.name()).collect()))?,
         );
+        let rejects = algorithm.variant.rejects();
         for word in words {
-            let rejection = Rejection::ALL.into_iter().find(|r| r.name() == word);
-            let solver = Solver::from_name(word);
-            let misplaced = match (algorithm.variant.rejects(), rejection, solver) {
-                (false, Some(_), _) => Some("mc or qmc: this variant samples by inverse functions"),
-                (true, _, Some(_)) => {
-                    Some("qmc-inverse or qmc-inverse-reuse: this variant solves no equation")
-                }
-                _ => None,
+            let misplaced = |required: &str| {
+                Err(Diagnostic::new(Kind::Range, format!("variant {text}: {word}"), required))
             };
-            if let Some(required) = misplaced {
-                return Err(Diagnostic::new(Kind::Range, format!("variant {text}: {word}"), required));
-            }
-            match (rejection, solver, Sequence::from_name(word)) {
-                (Some(rejection), ..) => algorithm.rejection = rejection,
-                (_, Some(solver), _) => algorithm.solver = solver,
-                (.., Some(sequence)) => algorithm.sequence = sequence,
-                _ => {
-                    let known = Rejection::ALL.iter().map(|r| r.name());
-                    let known = known.chain(Solver::ALL.iter().map(|s| s.name()));
-                    return Err(unknown(word, known.chain(Sequence::ALL.iter().map(|s| s.name())).collect()));
+            if let Some(rejection) = Rejection::ALL.into_iter().find(|r| r.name() == word) {
+                if !rejects {
+                    return misplaced("mc or qmc: this variant samples by inverse functions");
                 }
+                algorithm.rejection = rejection;
+            } else if let Some(solver) = Solver::from_name(word) {
+                if rejects {
+                    return misplaced("qmc-inverse or qmc-inverse-reuse: this variant solves no equation");
+                }
+                algorithm.solver = solver;
+            } else if let Some(sequence) = Sequence::from_name(word) {
+                algorithm.sequence = sequence;
+            } else {
+                let known = Rejection::ALL.iter().map(|r| r.name());
+                let known = known.chain(Solver::ALL.iter().map(|s| s.name()));
+                return Err(unknown(word, known.chain(Sequence::ALL.iter().map(|s| s.name())).collect()));
             }
         }
         Ok(algorithm)
@@ -133,15 +127,15 @@ impl Algorithm {
     pub fn name(&self) -> String {
         let default = Self::from(self.variant);
         let mut name = self.variant.name().to_string();
-        let mut add = |differs: bool, word: &str| {
+        for (differs, word) in [
+            (self.rejection != default.rejection, self.rejection.name()),
+            (self.solver != default.solver, self.solver.name()),
+            (self.sequence != default.sequence, self.sequence.name()),
+        ] {
             if differs {
-                name.push(':');
-                name.push_str(word);
+                name = name + ":" + word;
             }
-        };
-        add(self.rejection != default.rejection, self.rejection.name());
-        add(self.solver != default.solver, self.solver.name());
-        add(self.sequence != default.sequence, self.sequence.name());
+        }
         name
     }
 

@@ -121,13 +121,7 @@ impl Outcome {
 
     /// Illuminance in a cell of a receiver with this cell area, lx.
     pub fn illuminance_lx(&self, receiver: usize, cell: usize, area_m2: f64) -> Estimate {
-        let moments = &self.cells[receiver];
-        let (sum, square) = (moments.sum[cell], moments.square[cell]);
-        let lx = self.photon_lm / area_m2;
-        Estimate {
-            value: sum as f64 * lx,
-            standard_error: standard_error_of_cell(sum, square, self.replicates).map(|e| e * lx),
-        }
+        self.estimate(&self.cells[receiver], cell, self.photon_lm / area_m2, standard_error_of_cell)
     }
 
     /// Flux that arrived at a receiver, lm.
@@ -151,10 +145,19 @@ impl Outcome {
     }
 
     fn total(&self, moments: &Moments, at: usize) -> Estimate {
+        self.estimate(moments, at, self.photon_lm, standard_error_of_total)
+    }
+
+    /// A count of photons in a unit, what one photon is worth.
+    fn estimate(
+        &self,
+        moments: &Moments,
+        at: usize,
+        unit: f64,
+        error: fn(u64, u128, u32) -> Option<f64>,
+    ) -> Estimate {
         let (sum, square) = (moments.sum[at], moments.square[at]);
-        Estimate {
-            value: sum as f64 * self.photon_lm,
-            standard_error: standard_error_of_total(sum, square, self.replicates).map(|e| e * self.photon_lm),
-        }
+        let standard_error = error(sum, square, self.replicates).map(|e| e * unit);
+        Estimate { value: sum as f64 * unit, standard_error }
     }
 }

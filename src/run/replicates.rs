@@ -35,7 +35,7 @@ pub fn trace(
 /// A run whose photons go through other hands: [`trace`] for pictures.
 ///
 /// `stage(tracer, end, receivers)` is called for each range of photons in turn, replicate by replicate
-/// ([`Tracer::replicate`]). It takes the tracer on to photon number `end` ([`Tracer::trace_into`], in as many
+/// ([`Tracer::points`]). It takes the tracer on to photon number `end` ([`Tracer::trace_into`], in as many
 /// steps as it likes), adds every arrival to `receivers` once, and gives what the steps traced. Where that is
 /// not complete (an interrupt) the run ends without it: of the first replicate the stages before it count, of
 /// any other none.

@@ -3,7 +3,6 @@
 use std::sync::atomic::AtomicBool;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::independent::IndependentPoints;
 use crate::sequence::other::OtherPoints;
@@ -48,7 +47,7 @@ impl PointSet {
     pub fn provide<U: UsePoints>(&self, user: U) -> Result<U::Output> {
         Ok(match self.sequence {
             Sequence::Independent => user.with(&IndependentPoints::new(self.seed, self.replicate)),
-            Sequence::Sobol => user.with(&SobolPoints::new()),
+            Sequence::Sobol => user.with(&SobolPoints),
             Sequence::SobolOwen => user.with(&OwenPoints::new(self.seed, self.replicate)),
             _ => user.with(&self.any()?),
         })
@@ -68,9 +67,10 @@ impl PointSet {
 pub struct Tracer<'s> {
     scene: &'s Scene,
     algorithm: Algorithm,
-    points: PointSet,
+    /// The points it follows.
+    pub points: PointSet,
     /// Photons traced so far.
-    photons: u64,
+    pub photons: u64,
     /// Points used so far: more than photons where rejected points give none.
     attempts: u64,
 }
@@ -123,16 +123,6 @@ impl<'s> Tracer<'s> {
         self.moved_on(until, attempts, traced)
     }
 
-    /// Photons traced so far.
-    pub fn photons(&self) -> u64 {
-        self.photons
-    }
-
-    /// Which of the independent randomisations it follows.
-    pub fn replicate(&self) -> u32 {
-        self.points.replicate
-    }
-
     fn how<'a>(&self, interrupt: &'a AtomicBool, progress: &'a (dyn Fn(u64) + Sync)) -> Result<How<'a>> {
         self.algorithm.check_skipping(self.scene.emitters.is_single())?;
         let (reuse, sampling) = (self.algorithm.variant.reuses(), self.algorithm.sampling());
@@ -140,7 +130,14 @@ impl<'s> Tracer<'s> {
     }
 
     fn moved_on(&mut self, until: u64, attempts: u64, traced: Traced) -> Result<Traced> {
-        check_balance(&traced)?;
+        let ledger = &traced.ledger;
+        if !ledger.is_balanced() {
+            return Err(Diagnostic::new(
+                Kind::Geometry,
+                format!("{} photons begun, {} ended", ledger.total_emitted(), ledger.total_ended()),
+                "every photon to end exactly once: this is a defect of caustix, please report it with the scene",
+            ));
+        }
         (self.photons, self.attempts) = (until, attempts);
         Ok(traced)
     }
@@ -170,22 +167,8 @@ impl<F> Stage<'_, '_, F> {
         let Self { tracer, how, until, sink } = self;
         let (scene, start) = (tracer.scene, tracer.attempts);
         let wanted = until.saturating_sub(tracer.photons);
-        let end = match how.sampling {
-            s if s.skips_points() => advance(scene, points, &how, start, wanted),
-            Sampling::Inverse(_) | Sampling::Rejection(_) => start + wanted,
-        };
+        let skips = how.sampling.skips_points();
+        let end = if skips { advance(scene, points, &how, start, wanted) } else { start + wanted };
         (trace_range(scene, &scene.emitters, points, start..end, carried, how, sink), end)
     }
-}
-
-fn check_balance(traced: &Traced) -> Result<()> {
-    let ledger = &traced.ledger;
-    if ledger.is_balanced() {
-        return Ok(());
-    }
-    Err(Diagnostic::new(
-        Kind::Geometry,
-        format!("{} photons begun, {} ended", ledger.total_emitted(), ledger.total_ended()),
-        "every photon to end exactly once: this is a defect of caustix, please report it with the scene",
-    ))
 }

@@ -106,7 +106,8 @@ impl Run<'_> {
             ),
             surfaces: Vec::new(),
             share: Some(share),
-            remedy: "give the surfaces between which light goes round a reflectance below 1, or a way out".into(),
+            remedy: "give the surfaces between which light goes round a reflectance below 1, or a way out"
+                .into(),
         })
     }
 

@@ -93,31 +93,37 @@ pub struct Located {
     pub x: f64,
 }
 
+fn out_of_range<T>(found: String, required: &str) -> Result<T> {
+    Err(Diagnostic::new(Kind::Range, found, required))
+}
+
 impl Angles {
     /// Polar angles within [0, pi] and azimuths within one turn, radians, both strictly rising.
     ///
     /// # Errors
     /// Anything else; fewer than two angles of either kind; more than [`MAX_NODES`] pairs.
     pub fn new(polar: &[f64], azimuth: &[f64]) -> Result<Self> {
-        let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
         if polar.len() < 2 || azimuth.len() < 2 {
             let found = format!("{} polar and {} azimuth angles", polar.len(), azimuth.len());
-            return fail(found, "at least two of each");
+            return out_of_range(found, "at least two of each");
         }
         if polar.len().checked_mul(azimuth.len()).is_none_or(|n| n > MAX_NODES) {
             let found = format!("{} x {} angles", polar.len(), azimuth.len());
-            return fail(found, "at most 2^22 pairs");
+            return out_of_range(found, "at most 2^22 pairs");
         }
         let rising = |angles: &[f64]| angles.windows(2).all(|w| w[0] < w[1]);
         if !rising(polar) || !rising(azimuth) {
-            return fail("angles that do not rise".into(), "strictly rising polar angles and azimuths");
+            return out_of_range(
+                "angles that do not rise".into(),
+                "strictly rising polar angles and azimuths",
+            );
         }
         let (first, last) = (polar[0], polar[polar.len() - 1]);
         let turn = azimuth[azimuth.len() - 1] - azimuth[0];
         // A full turn in radians is known to rounding only. Infinities rise too.
         if !(first >= 0.0 && last <= PI && turn <= 2.0 * PI * (1.0 + 2.0 * ROUNDING)) {
             let found = format!("polar {first} to {last}, azimuth over {turn}");
-            return fail(found, "polar angles within [0, pi] and azimuths within one turn");
+            return out_of_range(found, "polar angles within [0, pi] and azimuths within one turn");
         }
         Ok(Self {
             rows: polar.windows(2).map(|w| Row::new(w[0], w[1])).collect(),
@@ -132,13 +138,10 @@ impl Angles {
     pub fn largest(&self, values: &[f64]) -> Result<f64> {
         if values.len() != self.node_count() {
             let found = format!("{} values for {} nodes", values.len(), self.node_count());
-            return Err(Diagnostic::new(Kind::Range, found, "one value for each node"));
+            return out_of_range(found, "one value for each node");
         }
         match values.iter().find(|v| !(**v >= 0.0 && v.is_finite())) {
-            Some(bad) => {
-                let required = "finite values that are not negative";
-                Err(Diagnostic::new(Kind::Range, bad.to_string(), required))
-            }
+            Some(bad) => out_of_range(bad.to_string(), "finite values that are not negative"),
             None => Ok(values.iter().copied().fold(0.0, f64::max)),
         }
     }
@@ -154,14 +157,14 @@ impl Angles {
     /// First and last polar angle, first and last azimuth, radians.
     pub fn range(&self) -> ([f64; 2], [f64; 2]) {
         let (first, last) = (&self.rows[0], &self.rows[self.rows.len() - 1]);
-        let (left, right) = (&self.columns[0], &self.columns[self.columns.len() - 1]);
-        ([first.theta, (last.theta + last.width).min(PI)], [left.phi, right.phi + right.width])
+        ([first.theta, (last.theta + last.width).min(PI)], self.azimuths())
     }
 
     /// The place of (theta, phi), phi up to full turns; `None` outside the table. An edge between two cells
     /// belongs to the second of them; the outer edges belong to the table, with the rounding of an angle.
     pub fn locate(&self, theta: f64, phi: f64) -> Option<Located> {
-        let (first, turn) = (self.columns[0].phi, self.turn());
+        let [first, last] = self.azimuths();
+        let turn = last - first;
         let turns = libm::floor((phi - first) / (2.0 * PI));
         let phi = if (first..=first + turn).contains(&phi) { phi } else { phi - 2.0 * PI * turns };
         let start = self.rows[0].theta;
@@ -180,10 +183,10 @@ impl Angles {
         Some(Located { row: i, column: j, s: s.min(row.width), x: (t / column.width).min(1.0) })
     }
 
-    /// Extent of all azimuths.
-    fn turn(&self) -> f64 {
+    /// First and last azimuth, radians.
+    fn azimuths(&self) -> [f64; 2] {
         let (left, right) = (&self.columns[0], &self.columns[self.columns.len() - 1]);
-        right.phi + right.width - left.phi
+        [left.phi, right.phi + right.width]
     }
 
     /// A1, A2, B1, B2 of a cell.

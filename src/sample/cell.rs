@@ -95,15 +95,22 @@ impl Cell {
         [u_theta, u_phi]: [f64; 2],
         solver: Solver,
     ) -> (GridPoint, f64, f64) {
-        let Polar { s, sin, cos, .. } = self.sample_theta(row, u_theta, solver);
-        let x = self.sample_phi(row, s, u_phi);
+        let polar = self.sample_theta(row, u_theta, solver);
+        let x = self.sample_phi(row, polar.s, u_phi);
+        (GridPoint::new(row, column, &polar, x), polar.s, x)
+    }
+}
+
+impl GridPoint {
+    /// The point at a polar angle inside a row, a fraction x into a column.
+    #[inline]
+    pub(super) fn new(row: &Row, column: &Column, polar: &Polar, x: f64) -> Self {
         let (sin_phi, cos_phi) = column.azimuth(x);
-        let point = GridPoint {
-            direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
-            theta: row.theta + s,
+        Self {
+            direction: DVec3::new(polar.sin * cos_phi, polar.sin * sin_phi, polar.cos),
+            theta: row.theta + polar.s,
             phi: column.phi + x * column.width,
-        };
-        (point, s, x)
+        }
     }
 }
 

@@ -25,29 +25,9 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// Every purpose, in the order of the counters.
-    pub const ALL: [Self; 7] = [
-        Self::Emission,
-        Self::EmissionTheta,
-        Self::EmissionPhi,
-        Self::BeamPosition,
-        Self::Event,
-        Self::Scatter,
-        Self::Acceptance,
-    ];
-
-    /// The label in reports.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Emission => "emission",
-            Self::EmissionTheta => "emission theta",
-            Self::EmissionPhi => "emission phi",
-            Self::BeamPosition => "beam position",
-            Self::Event => "event",
-            Self::Scatter => "scatter",
-            Self::Acceptance => "acceptance",
-        }
-    }
+    /// What every purpose is called in reports, in the order of the counters.
+    pub const LABELS: [&'static str; 7] =
+        ["emission", "emission theta", "emission phi", "beam position", "event", "scatter", "acceptance"];
 }
 
 /// What makes the decisions of a walk: a photon's coordinates, or a script.

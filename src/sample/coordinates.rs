@@ -20,7 +20,7 @@ pub struct Coordinates<'p, P> {
     sampling: Sampling,
     event: Option<Reusable>,
     drawn: u32,
-    drawn_for: [u32; Purpose::ALL.len()],
+    drawn_for: [u32; Purpose::LABELS.len()],
 }
 
 impl<'p, P: Points> Coordinates<'p, P> {
@@ -33,7 +33,7 @@ impl<'p, P: Points> Coordinates<'p, P> {
     /// The same for a photon that samples tables of scattering in a given way.
     #[inline]
     pub fn sampling_by(points: &'p P, index: u64, reuse: bool, sampling: Sampling) -> Self {
-        let drawn_for = [0; Purpose::ALL.len()];
+        let drawn_for = [0; Purpose::LABELS.len()];
         Self { points, index, reuse, sampling, event: None, drawn: 0, drawn_for }
     }
 
@@ -43,9 +43,9 @@ impl<'p, P: Points> Coordinates<'p, P> {
         self.drawn
     }
 
-    /// Coordinates consumed so far for each purpose, in the order of [`Purpose::ALL`].
+    /// Coordinates consumed so far for each purpose, in the order of [`Purpose::LABELS`].
     #[inline]
-    pub fn drawn_for(&self) -> &[u32; Purpose::ALL.len()] {
+    pub fn drawn_for(&self) -> &[u32; Purpose::LABELS.len()] {
         &self.drawn_for
     }
 

@@ -13,7 +13,7 @@
 
 use super::angles::Row;
 use crate::math::solve::{
-    Expansion, Root, Solver, bisection, bracketed_newton, bracketed_secant, bracketed_series, ridder,
+    Expansion, Solver, bisection_step, bracketed, bracketed_series, ridder, secant_step,
 };
 use crate::math::trig::InCell;
 
@@ -84,32 +84,24 @@ impl<'r> Marginal<'r> {
     #[inline(never)]
     fn solve_otherwise(&self, u: f64, solver: Solver) -> Polar {
         let w = self.row.width;
+        let residual = |s: f64| {
+            let (mass, t) = self.mass_to(s);
+            (mass - u, t)
+        };
         let root = match solver {
             Solver::Secant => {
                 let (start, inverse_slope) = self.linear_start(u);
-                bracketed_secant(0.0, w, start, inverse_slope, TOLERANCE, |s| self.residual(s, u))
+                bracketed([0.0, w], start, TOLERANCE, residual, secant_step(inverse_slope))
             }
-            Solver::Newton => self.newton(u * w, u),
+            Solver::Newton => bracketed([0.0, w], u * w, TOLERANCE, residual, |s, value, t| {
+                s - value / ((self.level + self.rise * s) * self.sin_cos(t).0)
+            }),
             Solver::QuadraticNewton => return self.quadratic_newton(u),
-            Solver::Ridder => ridder((0.0, -u), (w, 1.0 - u), TOLERANCE, |s| self.residual(s, u)),
-            Solver::Bisection => bisection(0.0, w, TOLERANCE, |s| self.residual(s, u)),
+            Solver::Ridder => ridder([(0.0, -u), (w, 1.0 - u)], TOLERANCE, residual),
+            Solver::Bisection => bracketed([0.0, w], f64::NAN, TOLERANCE, residual, bisection_step),
         };
         let (sin, cos) = self.sin_cos(&root.by_product);
         Polar { s: root.x, sin, cos, evaluations: root.evaluations }
-    }
-
-    #[inline]
-    fn residual(&self, s: f64, u: f64) -> (f64, InCell) {
-        let (mass, t) = self.mass_to(s);
-        (mass - u, t)
-    }
-
-    #[inline]
-    fn newton(&self, start: f64, u: f64) -> Root<InCell> {
-        bracketed_newton(0.0, self.row.width, start, TOLERANCE, |s| {
-            let (mass, t) = self.mass_to(s);
-            (mass - u, (self.level + self.rise * s) * self.sin_cos(&t).0, t)
-        })
     }
 
     /// A bound of the fifth Taylor coefficient of F anywhere in the cell. Derivative k of the density

@@ -36,11 +36,7 @@ impl Rejection {
 
     /// The name in commands and files.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Cell => "cell",
-            Self::Table => "table",
-            Self::NextPoint => "next-point",
-        }
+        ["cell", "table", "next-point"][self as usize]
     }
 
     /// The same in words.

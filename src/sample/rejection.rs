@@ -13,6 +13,7 @@ use super::angles::{Angles, Column, Row};
 use super::cell::{Cell, GridPoint};
 use super::choose::Reusable;
 use super::coordinates::{Chooser, Purpose};
+use super::marginal::Polar;
 use crate::math::trig::sin_cos;
 
 /// Purposes of the coordinates of theta and phi.
@@ -49,15 +50,8 @@ pub(super) fn attempt<C: Chooser>(
     (chooser.uniform(Purpose::Acceptance) < value).then_some(point)
 }
 
-/// A polar angle reached from theta1 by the difference of cosines h.
-struct Reached {
-    /// theta - theta1.
-    s: f64,
-    sin: f64,
-    cos: f64,
-}
-
-fn reach(sin1: f64, cos1: f64, h: f64) -> Reached {
+/// The polar angle that is reached from theta1 by the difference of cosines h.
+fn reach(sin1: f64, cos1: f64, h: f64) -> Polar {
     let sin = (sin1 * sin1 + h * (2.0 * cos1 - h)).max(0.0).sqrt();
     let sum = sin1 + sin;
     // Both sines vanish at a pole reached from the same pole (h = 0) and from the other one (h = 2).
@@ -68,7 +62,7 @@ fn reach(sin1: f64, cos1: f64, h: f64) -> Reached {
     } else {
         0.0
     };
-    Reached { s, sin, cos: cos1 - h }
+    Polar { s, sin, cos: cos1 - h, evaluations: 0 }
 }
 
 impl Cell {
@@ -81,15 +75,9 @@ impl Cell {
 
 /// A point uniform in the solid angle of a cell, and theta - theta1.
 pub(super) fn uniform_in_cell(row: &Row, column: &Column, [u_theta, u_phi]: [f64; 2]) -> (GridPoint, f64) {
-    let Reached { s, sin, cos } = reach(row.sin, row.cos, u_theta * row.cap());
-    let s = s.min(row.width);
-    let (sin_phi, cos_phi) = column.azimuth(u_phi);
-    let point = GridPoint {
-        direction: DVec3::new(sin * cos_phi, sin * sin_phi, cos),
-        theta: row.theta + s,
-        phi: column.phi + u_phi * column.width,
-    };
-    (point, s)
+    let mut polar = reach(row.sin, row.cos, u_theta * row.cap());
+    polar.s = polar.s.min(row.width);
+    (GridPoint::new(row, column, &polar, u_phi), polar.s)
 }
 
 impl Angles {
@@ -98,7 +86,7 @@ impl Angles {
         let ([low, high], [phi1, phi2]) = self.range();
         let first = &self.rows[0];
         let h = u_theta * (first.cos - libm::cos(high));
-        let Reached { s, sin, cos } = reach(first.sin, first.cos, h);
+        let Polar { s, sin, cos, .. } = reach(first.sin, first.cos, h);
         let phi = phi1 + u_phi * (phi2 - phi1);
         let (sin_phi, cos_phi) = sin_cos(phi);
         let direction = DVec3::new(sin * cos_phi, sin * sin_phi, cos);
@@ -120,7 +108,7 @@ mod tests {
                 let row = Row::new(theta1, theta1 + width);
                 for u in [0.0, 1e-12, 0.25, 0.5, 0.99, 1.0] {
                     let h = u * row.cap();
-                    let Reached { s, sin, cos } = reach(row.sin, row.cos, h);
+                    let Polar { s, sin, cos, .. } = reach(row.sin, row.cos, h);
                     // cos(theta1) - cos(theta1 + s) = 2 sin(theta1 + s/2) sin(s/2), by its own formula.
                     let middle = theta1 + 0.5 * row.width;
                     let back = 2.0 * (middle + 0.5 * (s - row.width)).sin() * (0.5 * s).sin();

@@ -72,13 +72,10 @@ pub fn reciprocity(table: &ScatterTable, quantity: Quantity, from_front: bool) -
 pub fn all(table: &ScatterTable) -> Vec<(Quantity, bool, Defect)> {
     let one = |(quantity, front)| reciprocity(table, quantity, front).map(|defect| (quantity, front, defect));
     let both = |l: Option<&super::Lobe>| l.is_some_and(|l| l.side == LobeSide::Both);
-    let second = !both(table.lobe(Quantity::Reflection, true));
-    let mut list = vec![(Quantity::Reflection, true)];
-    if second {
-        list.push((Quantity::Reflection, false));
-    }
-    list.push((Quantity::Transmission, true));
-    list.into_iter().filter_map(one).collect()
+    let back = (Quantity::Reflection, false);
+    let ways = [(Quantity::Reflection, true), back, (Quantity::Transmission, true)];
+    let same = both(table.lobe(Quantity::Reflection, true));
+    ways.into_iter().filter(|way| !(same && *way == back)).filter_map(one).collect()
 }
 
 /// Point i of the additive recurrence in four dimensions: steps are powers of the root of x^5 = x + 1.

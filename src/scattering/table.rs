@@ -81,6 +81,14 @@ pub struct LobeData {
     pub declared_tis: Vec<f64>,
 }
 
+impl LobeData {
+    /// Channels, phi_i, theta_i, polar angles and azimuths: how many of each.
+    pub fn counts(&self) -> [usize; 5] {
+        let [phi_i, theta_i] = [&self.phi_i_deg, &self.theta_i_deg].map(Vec::len);
+        [self.channels, phi_i, theta_i, self.polar_deg.len(), self.azimuth_deg.len()]
+    }
+}
+
 /// A checked lobe: finite values that are not negative, angles that rise within their ranges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lobe {
@@ -114,11 +122,10 @@ impl Lobe {
         }
         check_counts(&data)?;
         if let Some(at) = data.values.iter().position(|v| !v.is_finite()) {
-            return Err(Diagnostic::new(
-                Kind::Range,
+            return out_of_range(
                 format!("value {} of {}: {}", at + 1, data.values.len(), data.values[at]),
                 "finite values",
-            ));
+            );
         }
         let warning = clamp_negatives(&mut data.values);
         Ok((Self { data }, warning))
@@ -140,11 +147,6 @@ impl Lobe {
                 format!("at most {MAX_VALUES} in all"),
             )
         })
-    }
-
-    /// Channels, phi_i, theta_i, polar angles and azimuths: how many of each.
-    pub fn counts(&self) -> [usize; 5] {
-        counts(&self.data)
     }
 
     /// The parts.
@@ -200,11 +202,10 @@ impl ScatterTable {
         }
         for (i, one) in lobes.iter().enumerate() {
             if lobes[..i].iter().any(|other| one.quantity == other.quantity && meet(one.side, other.side)) {
-                return Err(Diagnostic::new(
-                    Kind::Range,
+                return out_of_range(
                     format!("two lobes for the {:?} of light from the same side", one.quantity),
                     "at most one for each quantity and side",
-                ));
+                );
             }
         }
         let mut checked = Vec::with_capacity(lobes.len());
@@ -227,42 +228,34 @@ fn meet(a: LobeSide, b: LobeSide) -> bool {
     a == b || a == LobeSide::Both || b == LobeSide::Both
 }
 
-fn counts(data: &LobeData) -> [usize; 5] {
-    [
-        data.channels,
-        data.phi_i_deg.len(),
-        data.theta_i_deg.len(),
-        data.polar_deg.len(),
-        data.azimuth_deg.len(),
-    ]
-}
-
 fn check_counts(data: &LobeData) -> Result<()> {
     if ![1, 3].contains(&data.channels) {
-        return Err(Diagnostic::new(Kind::Range, format!("{} channels", data.channels), "1 or 3"));
+        return out_of_range(format!("{} channels", data.channels), "1 or 3");
     }
-    let required = Lobe::value_count(counts(data))?;
+    let required = Lobe::value_count(data.counts())?;
     if data.values.len() != required {
-        return Err(Diagnostic::new(
-            Kind::Range,
+        return out_of_range(
             format!("{} values", data.values.len()),
             format!("{required}, one for each channel and combination of angles"),
-        ));
+        );
     }
     let incidences = data.phi_i_deg.len() * data.theta_i_deg.len();
     if ![0, incidences].contains(&data.declared_tis.len()) {
-        return Err(Diagnostic::new(
-            Kind::Range,
+        return out_of_range(
             format!("{} declared total scatters for {incidences} incidences", data.declared_tis.len()),
             "none, or one for each incidence",
-        ));
+        );
     }
     finite("declared total scatter", &data.declared_tis)
 }
 
+fn out_of_range<T>(found: String, required: impl Into<String>) -> Result<T> {
+    Err(Diagnostic::new(Kind::Range, found, required))
+}
+
 fn finite(what: &str, numbers: &[f64]) -> Result<()> {
     match numbers.iter().find(|x| !x.is_finite()) {
-        Some(bad) => Err(Diagnostic::new(Kind::Range, format!("{what} {bad}"), "finite numbers")),
+        Some(bad) => out_of_range(format!("{what} {bad}"), "finite numbers"),
         None => Ok(()),
     }
 }
@@ -270,11 +263,7 @@ fn finite(what: &str, numbers: &[f64]) -> Result<()> {
 fn check_rising(what: &str, angles_deg: &[f64]) -> Result<()> {
     finite(what, angles_deg)?;
     match angles_deg.windows(2).find(|w| w[0] >= w[1]) {
-        Some(w) => Err(Diagnostic::new(
-            Kind::Range,
-            format!("{what} angle {} after {}", w[1], w[0]),
-            "strictly rising angles",
-        )),
+        Some(w) => out_of_range(format!("{what} angle {} after {}", w[1], w[0]), "strictly rising angles"),
         None => Ok(()),
     }
 }
@@ -290,28 +279,23 @@ fn check_angles(what: &str, angles_deg: &[f64], least: usize, most_deg: f64) -> 
     }
     let (first, last) = (angles_deg[0], angles_deg[angles_deg.len() - 1]);
     if first < 0.0 || last > most_deg {
-        return Err(Diagnostic::new(
-            Kind::Range,
+        return out_of_range(
             format!("{what} angles from {first} to {last}"),
             format!("0 to {most_deg} degrees"),
-        ));
+        );
     }
     Ok(())
 }
 
 fn check_turn(what: &str, angles_deg: &[f64]) -> Result<()> {
     check_rising(what, angles_deg)?;
-    let turn = match (angles_deg.first(), angles_deg.last()) {
-        (Some(first), Some(last)) => last - first,
-        _ => 0.0,
-    };
+    let turn = angles_deg.first().zip(angles_deg.last()).map_or(0.0, |(first, last)| last - first);
     // Differences of degrees that were printed or computed round at their own size.
     if (turn - 360.0).abs() > 360.0 * 16.0 * f64::EPSILON {
-        return Err(Diagnostic::new(
-            Kind::Range,
+        return out_of_range(
             format!("{what} angles that span {turn} degrees"),
             "one full turn with both ends, such as 0 to 360",
-        ));
+        );
     }
     Ok(())
 }

@@ -27,11 +27,8 @@ pub fn value(lobe: &Lobe, channel: usize, wi: DVec3, wo: DVec3) -> f64 {
     let phi_i = if across > 0.0 { atan2(wi.y, wi.x).to_degrees() } else { 0.0 };
     let (polar, azimuth) = scattered_angles(lobe, wi, wo, theta_i, across);
     let thetas = between(&lobe.theta_i_deg, theta_i.to_degrees());
-    let phis = if lobe.is_isotropic() {
-        [(0, 1.0), (0, 0.0)]
-    } else {
-        between(&lobe.phi_i_deg, wrap(&lobe.phi_i_deg, phi_i))
-    };
+    // Of an isotropic lobe this is its one phi_i.
+    let phis = between(&lobe.phi_i_deg, wrap(&lobe.phi_i_deg, phi_i));
     let mut g = 0.0;
     for (phi, of_phi) in phis {
         for (theta, of_theta) in thetas {

@@ -8,8 +8,8 @@ use crate::geometry::{Bond, Geometry, Mesh, Shape, Surface};
 use crate::surface::Material;
 
 use super::camera::Camera;
-use super::receiver::{Cells, MOST_CELLS, Receiver, ReceiverSpec};
 use super::media::{Media, Medium};
+use super::receiver::{Cells, MOST_CELLS, Receiver, ReceiverSpec};
 use super::{Identity, Scene, check, contacts};
 
 /// How a surface is joined to those that it touches.

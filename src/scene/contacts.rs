@@ -10,14 +10,20 @@ use super::builder::{Joint, SurfaceOptions};
 pub(super) type Finding = (SurfaceId, Diagnostic);
 
 /// Contacts in which no rule says what is met first, and bodies of which none is inside the other.
-pub(super) fn errors(geometry: &Geometry, materials: &[Material], options: &[SurfaceOptions]) -> Vec<Finding> {
+pub(super) fn errors(
+    geometry: &Geometry,
+    materials: &[Material],
+    options: &[SurfaceOptions],
+) -> Vec<Finding> {
     let at = |s: SurfaceId| s.0 as usize;
     let is_body = |s: SurfaceId| geometry.is_closed(s) && materials[at(s)].is_transparent();
     let name = |s: SurfaceId| &geometry.surfaces()[at(s)].name;
     let volume = |s: SurfaceId| geometry.surfaces()[at(s)].shape.volume_m3();
     let mut found = Vec::new();
     let mut refused: Vec<[SurfaceId; 2]> = Vec::new();
-    for Contact { surfaces: [a, b], facing } in geometry.contacts().iter().copied().filter(|c| c.surfaces[0] != c.surfaces[1]) {
+    for Contact { surfaces: [a, b], facing } in
+        geometry.contacts().iter().copied().filter(|c| c.surfaces[0] != c.surfaces[1])
+    {
         let is_open = !geometry.is_closed(a) && !geometry.is_closed(b);
         let are_solid = !materials[at(a)].is_transparent() && !materials[at(b)].is_transparent();
         if is_open || (!facing && are_solid) {
@@ -25,10 +31,18 @@ pub(super) fn errors(geometry: &Geometry, materials: &[Material], options: &[Sur
             let e = Diagnostic::new(Kind::Geometry, pair, "surfaces that do not coincide");
             found.push((b, e.hint("leave one of them out, or move them apart")));
             refused.push([a, b]);
-        } else if !facing && is_body(a) && is_body(b) && equal(volume(a), volume(b)) && options[at(a)].priority == options[at(b)].priority
+        } else if !facing
+            && is_body(a)
+            && is_body(b)
+            && equal(volume(a), volume(b))
+            && options[at(a)].priority == options[at(b)].priority
         {
             let pair = format!("the bodies \"{}\" and \"{}\" in the same place", name(a), name(b));
-            let e = Diagnostic::new(Kind::Geometry, pair, "a different `priority` of each: the body of the higher one fills the space");
+            let e = Diagnostic::new(
+                Kind::Geometry,
+                pair,
+                "a different `priority` of each: the body of the higher one fills the space",
+            );
             found.push((b, e.hint("leave one of them out, or give one of them `priority = 1`")));
             refused.push([a, b]);
         }
@@ -44,7 +58,8 @@ pub(super) fn errors(geometry: &Geometry, materials: &[Material], options: &[Sur
             }
             let pair = format!("the bodies \"{}\" and \"{}\" overlapping in part", name(a), name(b));
             let required = "bodies apart, one inside the other, or of different `priority`";
-            let hint = format!("give the one that fills the common space `priority = 1`, say \"{}\"", name(b));
+            let hint =
+                format!("give the one that fills the common space `priority = 1`, say \"{}\"", name(b));
             found.push((b, Diagnostic::new(Kind::Geometry, pair, required).hint(hint)));
         }
     }
@@ -56,13 +71,21 @@ fn equal(a: f64, b: f64) -> bool {
 }
 
 /// Transparent bodies in contact of which the scene does not say how.
-pub(super) fn warnings(geometry: &Geometry, materials: &[Material], options: &[SurfaceOptions]) -> Vec<Finding> {
+pub(super) fn warnings(
+    geometry: &Geometry,
+    materials: &[Material],
+    options: &[SurfaceOptions],
+) -> Vec<Finding> {
     let at = |s: SurfaceId| s.0 as usize;
     let name = |s: SurfaceId| &geometry.surfaces()[at(s)].name;
     let pairs = geometry.contacts().iter().filter(|contact| {
         let [a, b] = contact.surfaces;
         let is_clear = |s: SurfaceId| materials[at(s)].is_transparent();
-        contact.facing && a != b && is_clear(a) && is_clear(b) && options[at(a)].contact.or(options[at(b)].contact).is_none()
+        contact.facing
+            && a != b
+            && is_clear(a)
+            && is_clear(b)
+            && options[at(a)].contact.or(options[at(b)].contact).is_none()
     });
     pairs
         .map(|contact| {

@@ -92,7 +92,8 @@ impl Media {
             if geometry.is_closed(SurfaceId(i as u32)) {
                 return Role::Body { medium, rank: rank_of[i], outside };
             }
-            let before = outside.map_or(0, |ior| all.number(Medium { name: format!("what is before {name}"), ior }));
+            let before =
+                outside.map_or(0, |ior| all.number(Medium { name: format!("what is before {name}"), ior }));
             Role::Open { media: [before, medium] }
         });
         all.roles = roles.collect();
@@ -198,7 +199,8 @@ impl Media {
             Role::Solid => false,
             Role::Open { media } => at.ambient() != media[usize::from(!hit.front)],
             Role::Body { outside, .. } => outside.is_some_and(|ior| {
-                let own = Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
+                let own =
+                    Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
                 let crossed = if hit.front { None } else { Some(own) };
                 self.media[usize::from(self.with(at, &[crossed]))].ior != ior
             }),

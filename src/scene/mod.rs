@@ -105,7 +105,13 @@ impl Scene {
 
     /// Whether anything stands between `origin` (m) and the point `distance` (m) away along the unit vector `direction`, for
     /// a ray that starts in this state: any face but those with the same medium on both sides.
-    pub fn is_hidden(&self, mut origin: DVec3, direction: DVec3, mut distance: f64, mut at: Whereabouts) -> bool {
+    pub fn is_hidden(
+        &self,
+        mut origin: DVec3,
+        direction: DVec3,
+        mut distance: f64,
+        mut at: Whereabouts,
+    ) -> bool {
         if !self.media.may_vanish() {
             return self.geometry.occluded(origin, direction, distance, &at);
         }

@@ -7,7 +7,7 @@
 use std::sync::LazyLock;
 
 use super::faure::faure_permutation;
-use super::independent::IndependentPoints;
+use super::independent::UNSEEDED;
 use super::primes::PRIMES;
 use super::radical::Radix;
 use super::{LOW_DISCREPANCY_COORDINATES, Points};
@@ -22,24 +22,17 @@ static FAURE: LazyLock<Vec<Radix>> =
 #[derive(Debug, Clone)]
 pub struct HaltonPoints {
     odd: &'static [Radix],
-    beyond: IndependentPoints,
 }
 
 impl HaltonPoints {
     /// The plain Halton points.
-    pub fn new() -> Self {
-        Self { odd: &PLAIN, beyond: IndependentPoints::new(0, 0) }
+    pub fn plain() -> Self {
+        Self { odd: &PLAIN }
     }
 
     /// Halton points with Faure's permutation of the digits of each base.
     pub fn faure() -> Self {
-        Self { odd: &FAURE, beyond: IndependentPoints::new(0, 0) }
-    }
-}
-
-impl Default for HaltonPoints {
-    fn default() -> Self {
-        Self::new()
+        Self { odd: &FAURE }
     }
 }
 
@@ -50,7 +43,7 @@ impl Points for HaltonPoints {
             // sigma_2 is the identity, so base 2 is the same with and without permutations.
             0 => index.reverse_bits(),
             1..LOW_DISCREPANCY_COORDINATES => self.odd[coordinate as usize - 1].inverse(index),
-            _ => self.beyond.coordinate(index, coordinate),
+            _ => UNSEEDED.coordinate(index, coordinate),
         }
     }
 }
@@ -68,7 +61,7 @@ mod tests {
     #[test]
     fn first_points_are_the_published_ones() {
         // Van der Corput in bases 2, 3, 5 as every textbook prints it.
-        let points = HaltonPoints::new();
+        let points = HaltonPoints::plain();
         let two = [(0, 1), (1, 2), (1, 4), (3, 4), (1, 8), (5, 8), (3, 8), (7, 8), (1, 16)];
         let three = [(0, 1), (1, 3), (2, 3), (1, 9), (4, 9), (7, 9), (2, 9), (5, 9), (8, 9), (1, 27)];
         let five = [(0, 1), (1, 5), (2, 5), (3, 5), (4, 5), (1, 25), (6, 25), (11, 25), (16, 25), (21, 25)];
@@ -95,7 +88,7 @@ mod tests {
     #[test]
     fn blocks_of_powers_of_the_base_fill_every_interval_once() {
         // b^m points from any multiple of b^m on: one in each [k b^-m, (k + 1) b^-m); also far beyond 2^32.
-        for points in [HaltonPoints::new(), HaltonPoints::faure()] {
+        for points in [HaltonPoints::plain(), HaltonPoints::faure()] {
             for (coordinate, &base) in PRIMES.iter().enumerate() {
                 let block = if base < 32 { base * base } else { base };
                 for start in [0, block, (1 << 40) / block * block, (1 << 60) / block * block] {
@@ -113,7 +106,7 @@ mod tests {
 
     #[test]
     fn coordinates_beyond_the_last_base_come_from_the_hash() {
-        let (points, hash) = (HaltonPoints::new(), IndependentPoints::new(0, 0));
+        let (points, hash) = (HaltonPoints::plain(), &UNSEEDED);
         assert_eq!(points.coordinate(5, 64), hash.coordinate(5, 64));
         assert_eq!(to_unit_f64(points.coordinate(1, 63)), to_unit_f64(bits(1, 311)));
     }

@@ -9,7 +9,7 @@ use super::LOW_DISCREPANCY_COORDINATES;
 use super::Points;
 use super::fraction::Parts;
 use super::halton::HaltonPoints;
-use super::independent::IndependentPoints;
+use super::independent::UNSEEDED;
 
 /// The Hammersley set of N points: coordinate 0 of point i is i / N, coordinate c the radical inverse of i in prime
 /// c - 1. From index N on coordinate 0 starts again. Coordinates from the 64th on come from the counter hash, seed 0.
@@ -17,14 +17,12 @@ use super::independent::IndependentPoints;
 pub struct HammersleyPoints {
     parts: Parts,
     halton: HaltonPoints,
-    beyond: IndependentPoints,
 }
 
 impl HammersleyPoints {
     /// The set of this number of points.
     pub fn new(number: NonZeroU64) -> Self {
-        let beyond = IndependentPoints::new(0, 0);
-        Self { parts: Parts::new(number), halton: HaltonPoints::new(), beyond }
+        Self { parts: Parts::new(number), halton: HaltonPoints::plain() }
     }
 }
 
@@ -34,7 +32,7 @@ impl Points for HammersleyPoints {
         match coordinate {
             0 => self.parts.fraction(self.parts.wrap(index)),
             1..LOW_DISCREPANCY_COORDINATES => self.halton.coordinate(index, coordinate - 1),
-            _ => self.beyond.coordinate(index, coordinate),
+            _ => UNSEEDED.coordinate(index, coordinate),
         }
     }
 }
@@ -51,7 +49,7 @@ mod tests {
             let tenths = ((u128::from(i) << 64) / 10) as u64;
             assert_eq!(points.coordinate(i, 0), tenths);
             assert_eq!(points.coordinate(i, 1), i.reverse_bits());
-            assert_eq!(points.coordinate(i, 2), HaltonPoints::new().coordinate(i, 1));
+            assert_eq!(points.coordinate(i, 2), HaltonPoints::plain().coordinate(i, 1));
         }
         assert_eq!(to_unit_f64(points.coordinate(7, 0)), 0.7);
         assert_eq!(points.coordinate(13, 0), points.coordinate(3, 0));

@@ -21,14 +21,21 @@ pub struct IndependentPoints {
 
 impl IndependentPoints {
     /// The points of this seed and replicate.
-    pub fn new(seed: u64, replicate: u32) -> Self {
-        let keys = std::array::from_fn(|coordinate| keys(seed, replicate, coordinate as u32));
-        Self { seed, replicate, keys }
+    pub const fn new(seed: u64, replicate: u32) -> Self {
+        let (mut cached, mut coordinate) = ([(0, 0); CACHED], 0);
+        while coordinate < CACHED {
+            cached[coordinate] = keys(seed, replicate, coordinate as u32);
+            coordinate += 1;
+        }
+        Self { seed, replicate, keys: cached }
     }
 }
 
+/// What sequences without a seed have beyond their own coordinates: seed and replicate 0.
+pub(super) static UNSEEDED: IndependentPoints = IndependentPoints::new(0, 0);
+
 #[inline]
-fn keys(seed: u64, replicate: u32, coordinate: u32) -> (u64, u64) {
+const fn keys(seed: u64, replicate: u32, coordinate: u32) -> (u64, u64) {
     (stream_key(seed, replicate, coordinate, SALT_INNER), stream_key(seed, replicate, coordinate, SALT_OUTER))
 }
 

@@ -1,11 +1,13 @@
-//! Direction numbers "new-joe-kuo-6" for coordinates 1 to 63.
+//! Direction numbers "new-joe-kuo-6" for coordinates 1 to 63, and those of coordinate 0.
 //!
 //! Source: S. Joe and F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci.
 //! Comput. 30 (2008) 2635-2654, file new-joe-kuo-6.21201; first 63 rows (d = 2..64). The published m_i end at the
 //! degree s of the polynomial; the recurrence continues them to 64 bits and would to any number.
 
-/// (degree s, coefficients a of the primitive polynomial, initial odd m_1..m_s) of coordinate d - 1.
-pub(super) const ROWS: [(u32, u32, &[u32]); 63] = [
+/// (degree s, coefficients a of the primitive polynomial, initial odd m_1..m_s) of coordinate d - 1. The first has no
+/// polynomial: van der Corput in base 2, whose m_i are all 1.
+pub(super) const ROWS: [(u32, u32, &[u32]); 64] = [
+    (64, 0, &[1; 64]),
     (1, 0, &[1]),
     (2, 1, &[1, 3]),
     (3, 1, &[1, 3, 1]),

@@ -7,7 +7,7 @@
 use std::sync::LazyLock;
 
 use super::Points;
-use super::independent::IndependentPoints;
+use super::independent::UNSEEDED;
 
 /// Coordinates of the R2-type sequence. Its alphas must be chosen for a number of coordinates d: alpha_d = 1 - alpha_(d-1),
 /// so there are d of them and no more. Emission and the first events of a photon use about eight; with a larger d all
@@ -18,29 +18,22 @@ static ROBERTS: LazyLock<Vec<u128>> = LazyLock::new(|| harmonious_powers(ROBERTS
 
 /// Points of an additive recurrence. Coordinates past its own come from the counter hash with seed 0.
 #[derive(Debug, Clone)]
-pub struct KroneckerPoints {
-    alphas: &'static [u128],
-    beyond: IndependentPoints,
-}
+pub struct KroneckerPoints(pub(super) &'static [u128]);
 
 impl KroneckerPoints {
-    pub(super) fn with(alphas: &'static [u128]) -> Self {
-        Self { alphas, beyond: IndependentPoints::new(0, 0) }
-    }
-
     /// The R2-type sequence of M. Roberts ("The unreasonable effectiveness of quasirandom sequences", 2018) in
     /// [`ROBERTS_COORDINATES`] dimensions: alpha_c = phi^-(c+1), phi the positive root of x^(d+1) = x + 1.
     pub fn roberts() -> Self {
-        Self::with(&ROBERTS)
+        Self(&ROBERTS)
     }
 }
 
 impl Points for KroneckerPoints {
     #[inline]
     fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
-        match self.alphas.get(coordinate as usize) {
+        match self.0.get(coordinate as usize) {
             Some(alpha) => (alpha.wrapping_mul(u128::from(index)) >> 64) as u64,
-            None => self.beyond.coordinate(index, coordinate),
+            None => UNSEEDED.coordinate(index, coordinate),
         }
     }
 }

@@ -12,7 +12,7 @@ use std::num::NonZeroU64;
 
 use super::Points;
 use super::fraction::Parts;
-use super::independent::IndependentPoints;
+use super::independent::UNSEEDED;
 
 /// The first 64 of the 250 published components.
 const GENERATING_VECTOR: [u64; 64] = [
@@ -31,13 +31,12 @@ const GENERATING_VECTOR: [u64; 64] = [
 #[derive(Debug, Clone)]
 pub struct LatticePoints {
     parts: Parts,
-    beyond: IndependentPoints,
 }
 
 impl LatticePoints {
     /// The lattice of this number of points.
     pub fn new(number: NonZeroU64) -> Self {
-        Self { parts: Parts::new(number), beyond: IndependentPoints::new(0, 0) }
+        Self { parts: Parts::new(number) }
     }
 }
 
@@ -45,7 +44,7 @@ impl Points for LatticePoints {
     #[inline]
     fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
         let Some(&z) = GENERATING_VECTOR.get(coordinate as usize) else {
-            return self.beyond.coordinate(index, coordinate);
+            return UNSEEDED.coordinate(index, coordinate);
         };
         let number = self.parts.number();
         let product = u128::from(self.parts.wrap(index)) * u128::from(z);

@@ -4,8 +4,8 @@
 //! coordinate can be renormalised several times before it runs out of digits (METHOD 2). Nothing here has state:
 //! any thread may ask for any coordinate of any point in any order and gets the same bits.
 //!
-//! To add a sequence: a file beside these with a type that implements [`Points`], a line in [`Sequence`], a line in
-//! [`Sequence::ALL`], and an arm in [`other::OtherPoints`]. Only a sequence that is to be as fast as it can be also gets
+//! To add a sequence: a file beside these with a type that implements [`Points`], a line in [`Sequence`], one in its
+//! list, and an arm in [`other::OtherPoints`]. Only a sequence that is to be as fast as it can be also gets
 //! an arm where a run is started (`run::trace`), which matches once a batch, not once a coordinate.
 
 pub mod hash;
@@ -23,8 +23,7 @@ pub mod hammersley;
 pub mod lattice;
 pub mod kronecker;
 pub mod weyl;
-pub mod jittered;
-pub mod latin;
+pub mod stratified;
 pub mod shift;
 pub mod other;
 
@@ -79,51 +78,44 @@ pub enum Sequence {
     LatinHypercube,
 }
 
+/// Of every sequence, in the order in which they are listed to users: its name in commands and files; whether a seed
+/// changes the points; whether they are a set made for a known number of them.
+const LIST: [(Sequence, &str, bool, bool); 18] = [
+    (Sequence::Independent, "independent", true, false),
+    (Sequence::Sobol, "sobol", false, false),
+    (Sequence::SobolOwen, "sobol-owen", true, false),
+    (Sequence::SobolShift, "sobol-shift", true, false),
+    (Sequence::Halton, "halton", false, false),
+    (Sequence::HaltonRotation, "halton-rotation", true, false),
+    (Sequence::HaltonFaure, "halton-faure", false, false),
+    (Sequence::HaltonFaureRotation, "halton-faure-rotation", true, false),
+    (Sequence::Hammersley, "hammersley", false, true),
+    (Sequence::HammersleyRotation, "hammersley-rotation", true, true),
+    (Sequence::Lattice, "lattice", false, true),
+    (Sequence::LatticeRotation, "lattice-rotation", true, true),
+    (Sequence::Weyl, "weyl", false, false),
+    (Sequence::WeylRotation, "weyl-rotation", true, false),
+    (Sequence::Kronecker, "kronecker", false, false),
+    (Sequence::KroneckerRotation, "kronecker-rotation", true, false),
+    (Sequence::Jittered, "jittered", true, true),
+    (Sequence::LatinHypercube, "latin-hypercube", true, true),
+];
+
 impl Sequence {
     /// Every sequence, in the order in which they are listed to users.
-    pub const ALL: [Self; 18] = [
-        Self::Independent,
-        Self::Sobol,
-        Self::SobolOwen,
-        Self::SobolShift,
-        Self::Halton,
-        Self::HaltonRotation,
-        Self::HaltonFaure,
-        Self::HaltonFaureRotation,
-        Self::Hammersley,
-        Self::HammersleyRotation,
-        Self::Lattice,
-        Self::LatticeRotation,
-        Self::Weyl,
-        Self::WeylRotation,
-        Self::Kronecker,
-        Self::KroneckerRotation,
-        Self::Jittered,
-        Self::LatinHypercube,
-    ];
+    pub const ALL: [Self; LIST.len()] = {
+        let (mut all, mut i) = ([Self::Independent; LIST.len()], 0);
+        while i < LIST.len() {
+            all[i] = LIST[i].0;
+            assert!(all[i] as usize == i, "the list and the type have one order");
+            i += 1;
+        }
+        all
+    };
 
     /// The name in commands and files.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Independent => "independent",
-            Self::Sobol => "sobol",
-            Self::SobolOwen => "sobol-owen",
-            Self::SobolShift => "sobol-shift",
-            Self::Halton => "halton",
-            Self::HaltonRotation => "halton-rotation",
-            Self::HaltonFaure => "halton-faure",
-            Self::HaltonFaureRotation => "halton-faure-rotation",
-            Self::Hammersley => "hammersley",
-            Self::HammersleyRotation => "hammersley-rotation",
-            Self::Lattice => "lattice",
-            Self::LatticeRotation => "lattice-rotation",
-            Self::Weyl => "weyl",
-            Self::WeylRotation => "weyl-rotation",
-            Self::Kronecker => "kronecker",
-            Self::KroneckerRotation => "kronecker-rotation",
-            Self::Jittered => "jittered",
-            Self::LatinHypercube => "latin-hypercube",
-        }
+        LIST[self as usize].1
     }
 
     /// The sequence of this name.
@@ -133,29 +125,12 @@ impl Sequence {
 
     /// Whether a seed changes the points, that is whether replicates and a standard error exist.
     pub const fn is_randomised(self) -> bool {
-        !matches!(
-            self,
-            Self::Sobol
-                | Self::Halton
-                | Self::HaltonFaure
-                | Self::Hammersley
-                | Self::Lattice
-                | Self::Weyl
-                | Self::Kronecker
-        )
+        LIST[self as usize].2
     }
 
     /// Whether the points are a set made for a known number of them, of which a first part is no sample.
     pub const fn needs_number(self) -> bool {
-        matches!(
-            self,
-            Self::Hammersley
-                | Self::HammersleyRotation
-                | Self::Lattice
-                | Self::LatticeRotation
-                | Self::Jittered
-                | Self::LatinHypercube
-        )
+        LIST[self as usize].3
     }
 }
 

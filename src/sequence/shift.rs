@@ -34,45 +34,28 @@ impl Keys {
     }
 }
 
-/// Points whose bits are flipped where a random key of the coordinate has ones.
+/// Points that are joined, coordinate by coordinate, with random keys.
 #[derive(Debug, Clone)]
-pub struct Shifted<P> {
+pub struct Shifted<P, F> {
     points: P,
     keys: Keys,
+    join: F,
 }
 
-impl<P: Points> Shifted<P> {
-    /// These points under the digital shift of this seed and replicate.
-    pub fn new(points: P, seed: u64, replicate: u32) -> Self {
-        Self { points, keys: Keys::new(seed, replicate, SALT_SHIFT) }
-    }
+/// These points with their bits flipped where a random key of the coordinate has ones.
+pub fn digital_shift<P: Points>(points: P, seed: u64, replicate: u32) -> impl Points {
+    Shifted { points, keys: Keys::new(seed, replicate, SALT_SHIFT), join: |bits, key| bits ^ key }
 }
 
-impl<P: Points> Points for Shifted<P> {
+/// These points moved on a torus by a random vector.
+pub fn rotation<P: Points>(points: P, seed: u64, replicate: u32) -> impl Points {
+    Shifted { points, keys: Keys::new(seed, replicate, SALT_ROTATE), join: u64::wrapping_add }
+}
+
+impl<P: Points, F: Fn(u64, u64) -> u64 + Sync> Points for Shifted<P, F> {
     #[inline]
     fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
-        self.points.coordinate(index, coordinate) ^ self.keys.of(coordinate)
-    }
-}
-
-/// Points moved on a torus by a random vector.
-#[derive(Debug, Clone)]
-pub struct Rotated<P> {
-    points: P,
-    keys: Keys,
-}
-
-impl<P: Points> Rotated<P> {
-    /// These points under the rotation of this seed and replicate.
-    pub fn new(points: P, seed: u64, replicate: u32) -> Self {
-        Self { points, keys: Keys::new(seed, replicate, SALT_ROTATE) }
-    }
-}
-
-impl<P: Points> Points for Rotated<P> {
-    #[inline]
-    fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
-        self.points.coordinate(index, coordinate).wrapping_add(self.keys.of(coordinate))
+        (self.join)(self.points.coordinate(index, coordinate), self.keys.of(coordinate))
     }
 }
 
@@ -87,7 +70,7 @@ mod tests {
     fn a_digital_shift_keeps_the_net() {
         let m = 8u32;
         for (seed, replicate) in [(0, 0), (1, 5), (u64::MAX, 2)] {
-            let points = Shifted::new(SobolPoints::new(), seed, replicate);
+            let points = digital_shift(SobolPoints, seed, replicate);
             for a in 0..=m {
                 let mut seen = vec![false; 1 << m];
                 for i in 0..1u64 << m {
@@ -101,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_rotation_keeps_differences_modulo_one() {
-        let (plain, rotated) = (HaltonPoints::new(), Rotated::new(HaltonPoints::new(), 3, 1));
+        let (plain, rotated) = (HaltonPoints::plain(), rotation(HaltonPoints::plain(), 3, 1));
         for c in [0, 1, 63, 64, 100] {
             let by = rotated.coordinate(0, c).wrapping_sub(plain.coordinate(0, c));
             assert_ne!(by, 0);
@@ -121,9 +104,9 @@ mod tests {
                 (0..n)
                     .map(|replicate| {
                         let u = if rotate {
-                            Rotated::new(SobolPoints::new(), 8, replicate).coordinate(5, c)
+                            rotation(SobolPoints, 8, replicate).coordinate(5, c)
                         } else {
-                            Shifted::new(SobolPoints::new(), 8, replicate).coordinate(5, c)
+                            digital_shift(SobolPoints, 8, replicate).coordinate(5, c)
                         };
                         to_unit_f64(u) - 0.5
                     })

@@ -5,7 +5,7 @@
 //! continued to 64 bits by their own recurrence, so indices up to 2^64 - 1 and 2^64 points are distinct.
 //! The first point is the origin and is kept: powers of two from index 0 are nets.
 
-use super::independent::IndependentPoints;
+use super::independent::UNSEEDED;
 use super::joe_kuo::ROWS;
 use super::{LOW_DISCREPANCY_COORDINATES, Points};
 
@@ -32,22 +32,7 @@ pub fn sobol_reversed(index: u64, coordinate: u32) -> u64 {
 
 /// Plain Sobol' points. Coordinates from the 64th on come from the counter hash with seed 0: plain Sobol' has no seed.
 #[derive(Debug, Clone)]
-pub struct SobolPoints {
-    beyond: IndependentPoints,
-}
-
-impl SobolPoints {
-    /// The one set of plain Sobol' points.
-    pub fn new() -> Self {
-        Self { beyond: IndependentPoints::new(0, 0) }
-    }
-}
-
-impl Default for SobolPoints {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+pub struct SobolPoints;
 
 impl Points for SobolPoints {
     #[inline]
@@ -55,7 +40,7 @@ impl Points for SobolPoints {
         if coordinate < LOW_DISCREPANCY_COORDINATES {
             sobol_reversed(index, coordinate).reverse_bits()
         } else {
-            self.beyond.coordinate(index, coordinate)
+            UNSEEDED.coordinate(index, coordinate)
         }
     }
 }
@@ -64,15 +49,7 @@ impl Points for SobolPoints {
 const fn directions(coordinate: usize) -> [u64; 64] {
     let mut v = [0u64; 64];
     let mut k = 0;
-    if coordinate == 0 {
-        // Van der Corput in base 2.
-        while k < 64 {
-            v[k] = 1 << (63 - k);
-            k += 1;
-        }
-        return v;
-    }
-    let (degree, coefficients, initial) = ROWS[coordinate - 1];
+    let (degree, coefficients, initial) = ROWS[coordinate];
     let s = degree as usize;
     while k < 64 {
         if k < s {
@@ -101,17 +78,12 @@ const fn nibble_tables() -> [NibbleTable; LOW_DISCREPANCY_COORDINATES as usize] 
         let v = directions(coordinate);
         let mut digit = 0;
         while digit < NIBBLES {
-            let mut value = 1;
+            let mut value = 1usize;
             while value < 16 {
-                let mut bit = 0;
-                let mut bits = 0;
-                while bit < 4 {
-                    if (value >> bit) & 1 == 1 {
-                        bits ^= v[4 * digit + bit].reverse_bits();
-                    }
-                    bit += 1;
-                }
-                tables[coordinate][digit][value] = bits;
+                // One bit more than a value that stands before it in the table.
+                let (others, bit) = (value & (value - 1), value.trailing_zeros() as usize);
+                let added = v[4 * digit + bit].reverse_bits();
+                tables[coordinate][digit][value] = tables[coordinate][digit][others] ^ added;
                 value += 1;
             }
             digit += 1;
@@ -137,7 +109,7 @@ mod tests {
             [0.125, 0.625, 0.375, 0.125],
             [0.625, 0.125, 0.875, 0.625],
         ];
-        let points = SobolPoints::new();
+        let points = SobolPoints;
         for (i, row) in expected.iter().enumerate() {
             for (j, &u) in row.iter().enumerate() {
                 assert_eq!(
@@ -157,7 +129,7 @@ mod tests {
             (4, [0.875, 0.125, 0.625, 0.375]),
             (6, [0.125, 0.375, 0.875, 0.125]),
         ];
-        let points = SobolPoints::new();
+        let points = SobolPoints;
         for (i, row) in expected {
             for (j, u) in row.into_iter().enumerate() {
                 assert_eq!(
@@ -172,7 +144,7 @@ mod tests {
 
     #[test]
     fn every_coordinate_is_a_permutation_of_the_dyadic_fractions() {
-        let points = SobolPoints::new();
+        let points = SobolPoints;
         for coordinate in 0..LOW_DISCREPANCY_COORDINATES {
             let mut seen = vec![false; 1 << 12];
             for i in 0..1 << 12 {
@@ -186,7 +158,7 @@ mod tests {
     fn the_first_two_coordinates_are_a_zero_net() {
         // Every elementary interval 2^-a x 2^-(m-a) holds exactly one of the 2^m points; also in a block far beyond
         // 2^32.
-        let points = SobolPoints::new();
+        let points = SobolPoints;
         let m = 10u32;
         for start in [0u64, 1 << 40, 5 << 33] {
             for a in 0..=m {
@@ -203,7 +175,7 @@ mod tests {
 
     #[test]
     fn points_beyond_two_to_the_32_differ_from_all_before_in_every_coordinate() {
-        let points = SobolPoints::new();
+        let points = SobolPoints;
         for coordinate in 0..LOW_DISCREPANCY_COORDINATES {
             let low = points.coordinate(3, coordinate);
             for far in [(1u64 << 32) + 3, (1 << 45) + 3, (1 << 63) + 3] {

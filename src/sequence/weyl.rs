@@ -13,7 +13,7 @@ static ROOTS: LazyLock<Vec<u128>> = LazyLock::new(|| PRIMES.iter().map(|&p| frac
 impl KroneckerPoints {
     /// Weyl's points with the square roots of the first 64 primes.
     pub fn weyl() -> Self {
-        Self::with(&ROOTS)
+        Self(&ROOTS)
     }
 }
 

@@ -98,7 +98,13 @@ mod tests {
     }
 
     fn at() -> Incidence {
-        Incidence { direction: DVec3::new(0.6, 0.0, -0.8), facet: DVec3::Z, smooth: DVec3::Z, front: true, indices: [1.0; 2] }
+        Incidence {
+            direction: DVec3::new(0.6, 0.0, -0.8),
+            facet: DVec3::Z,
+            smooth: DVec3::Z,
+            front: true,
+            indices: [1.0; 2],
+        }
     }
 
     #[test]

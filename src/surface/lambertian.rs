@@ -95,7 +95,8 @@ mod tests {
         let wall = Lambertian::new(Reflectance::new(0.5).unwrap());
         for facet in [DVec3::Z, -DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
             for u in [0.0, 0.5, largest] {
-                let at = Incidence { direction: -facet, facet, smooth: facet, front: true, indices: [1.0; 2] };
+                let at =
+                    Incidence { direction: -facet, facet, smooth: facet, front: true, indices: [1.0; 2] };
                 match wall.scatter(&at, &mut Script::new([true], [largest, u]), &mut Grey) {
                     Event::Leaves { direction, through: false, .. } => assert!(direction.dot(facet) > 0.0),
                     other => panic!("{other:?}"),

@@ -95,7 +95,13 @@ mod tests {
     #[test]
     fn an_eye_path_goes_on_as_a_photon_does() {
         let smooth = DVec3::new(0.1, 0.0, 1.0).normalize();
-        let at = Incidence { direction: DVec3::new(0.6, 0.0, -0.8), facet: DVec3::Z, smooth, front: false, indices: [1.0; 2] };
+        let at = Incidence {
+            direction: DVec3::new(0.6, 0.0, -0.8),
+            facet: DVec3::Z,
+            smooth,
+            front: false,
+            indices: [1.0; 2],
+        };
         let parts = [0.75, 0.5, 0.25];
         let copper = Mirror::new(Reflectance::rgb(parts).unwrap());
         let Event::Leaves { direction, .. } = copper.scatter(&at, &mut Script::new([true], []), &mut Grey)

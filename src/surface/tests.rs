@@ -68,7 +68,13 @@ fn arriving(outward: DVec3, wi: [f64; 3]) -> Incidence {
     let wi = DVec3::from_array(wi).normalize();
     let front = wi.dot(outward) > 0.0;
     let facet = if front { outward } else { -outward };
-    Incidence { direction: -wi, facet, smooth: facet, front, indices: if front { [1.0, 1.5] } else { [1.5, 1.0] } }
+    Incidence {
+        direction: -wi,
+        facet,
+        smooth: facet,
+        front,
+        indices: if front { [1.0, 1.5] } else { [1.5, 1.0] },
+    }
 }
 
 fn incidences() -> [Incidence; 4] {

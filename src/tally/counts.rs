@@ -12,15 +12,9 @@ impl Counts {
         Self((0..cells).map(|_| AtomicU64::new(0)).collect())
     }
 
-    /// One more photon in a cell.
-    #[inline]
-    pub fn add(&self, cell: usize) {
-        self.0[cell].fetch_add(1, Ordering::Relaxed);
-    }
-
     /// This much more in a cell.
     #[inline]
-    pub fn add_amount(&self, cell: usize, amount: u64) {
+    pub fn add(&self, cell: usize, amount: u64) {
         self.0[cell].fetch_add(amount, Ordering::Relaxed);
     }
 
@@ -90,11 +84,11 @@ mod tests {
         std::thread::scope(|scope| {
             for thread in 0..4 {
                 let counts = &counts;
-                scope.spawn(move || (0..1000).for_each(|_| counts.add(thread % 2)));
+                scope.spawn(move || (0..1000).for_each(|_| counts.add(thread % 2, 1)));
             }
         });
-        counts.add_amount(2, 5);
-        counts.add_amount(2, 6);
+        counts.add(2, 5);
+        counts.add(2, 6);
         assert_eq!(counts.iter().collect::<Vec<_>>(), [2000, 2000, 11]);
         counts.clear();
         assert_eq!(counts.iter().collect::<Vec<_>>(), [0; 3]);

@@ -130,8 +130,8 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
         let all = self.receivers;
         all.routes.each_cell(
             arrival,
-            |receiver, cell| all.counts[receiver].add(cell),
-            |receiver| all.turned_away.add(receiver),
+            |receiver, cell| all.counts[receiver].add(cell, 1),
+            |receiver| all.turned_away.add(receiver, 1),
         );
     }
 }
@@ -149,7 +149,7 @@ impl<T> Sink<T> for FixedPointSink<'_, '_> {
     #[inline]
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
-        let add = |receiver: usize, cell| all.counts[receiver].add_amount(cell, self.amount);
+        let add = |receiver: usize, cell| all.counts[receiver].add(cell, self.amount);
         all.routes.each_cell(arrival, add, |_| {});
     }
 

@@ -37,8 +37,8 @@ pub struct Census {
     pub dimension_histogram: Vec<u64>,
     /// Most coordinates one photon consumed.
     pub dimension_max: u32,
-    /// Coordinates consumed in all, by purpose in the order of `Purpose::ALL`.
-    pub drawn_for: [u64; Purpose::ALL.len()],
+    /// Coordinates consumed in all, by purpose in the order of `Purpose::LABELS`.
+    pub drawn_for: [u64; Purpose::LABELS.len()],
     /// Exceptions.
     pub exceptions: Exceptions,
     /// Photons that met nothing at all, by emitter.
@@ -50,7 +50,7 @@ impl Default for Census {
         Self {
             dimension_histogram: vec![0; LONGEST_DIMENSION + 1],
             dimension_max: 0,
-            drawn_for: [0; Purpose::ALL.len()],
+            drawn_for: [0; Purpose::LABELS.len()],
             exceptions: Exceptions::default(),
             missed: BTreeMap::new(),
         }
@@ -60,7 +60,7 @@ impl Default for Census {
 impl Census {
     /// Counts a photon that consumed `drawn` coordinates.
     #[inline]
-    pub fn count(&mut self, drawn: u32, drawn_for: &[u32; Purpose::ALL.len()]) {
+    pub fn count(&mut self, drawn: u32, drawn_for: &[u32; Purpose::LABELS.len()]) {
         self.dimension_histogram[(drawn as usize).min(LONGEST_DIMENSION)] += 1;
         self.dimension_max = self.dimension_max.max(drawn);
         for (sum, n) in self.drawn_for.iter_mut().zip(drawn_for) {
@@ -70,7 +70,7 @@ impl Census {
 
     /// Counts the coordinates of a point that gave no photon: they are part of what the photons cost.
     #[inline]
-    pub fn count_rejected(&mut self, drawn_for: &[u32; Purpose::ALL.len()]) {
+    pub fn count_rejected(&mut self, drawn_for: &[u32; Purpose::LABELS.len()]) {
         for (sum, n) in self.drawn_for.iter_mut().zip(drawn_for) {
             *sum += u64::from(*n);
         }

@@ -95,7 +95,8 @@ fn placed(turn_deg: [f64; 3], by: [f64; 3], contact: &str, order: bool) -> Strin
     let block = slab("block", "glass", 0.0, 0.1, &(contact.to_owned() + "\n" + &place));
     let table = sheet("table", "black", 0.0, true) + &place;
     let turn = caustix::geometry::Transform::new(glam::DVec3::ONE, turn_deg.into(), by.into()).unwrap();
-    let [from, aim] = [turn.point(glam::DVec3::Z * 2.0), turn.normal(glam::DVec3::NEG_Z)].map(|v| v.to_array());
+    let [from, aim] =
+        [turn.point(glam::DVec3::Z * 2.0), turn.normal(glam::DVec3::NEG_Z)].map(|v| v.to_array());
     let lamp = format!(
         "[[emitter]]\ntype = \"collimated\"\nposition = {from:?}\naim = {aim:?}\nradius = 0.03\nflux_lm = 1000.0\n"
     );
@@ -157,7 +158,9 @@ fn plates_stacked_and_cemented() {
 #[test]
 fn a_block_in_a_corner_is_as_one_with_gaps() {
     let text = |gap: f64| {
-        let lamp = LAMP.replace("[0.0, 0.0, -1.0]", "[1.0, 0.3, -1.5]").replace("[0.0, 0.0, 2.0]", "[-0.3, -0.09, 0.6]");
+        let lamp = LAMP
+            .replace("[0.0, 0.0, -1.0]", "[1.0, 0.3, -1.5]")
+            .replace("[0.0, 0.0, 2.0]", "[-0.3, -0.09, 0.6]");
         let wall = "[[surface]]\nname = \"wall\"\ntype = \"rectangle\"\nmaterial = \"white\"\ncorner = [0.25, -1.0, -0.15]\nedge_u = [0.0, 0.0, 1.0]\nedge_v = [0.0, 2.0, 0.0]\n";
         [&lamp, GLASS, "[material.white]\ntype = \"lambertian\"\nreflectance = 0.5\n", wall].concat()
             + &cuboid("block", "glass", [-0.25, -0.25, -0.15 + gap], [0.25 - gap, 0.25, 0.35], "")
@@ -247,7 +250,8 @@ fn a_bubble_and_a_sphere_that_fills_it() {
     };
     let bubble = sphere("bubble", "air", [0.0; 3], 0.1, "");
     let of = |more: &str| flux(&scene(&text(more)), 1 << 13, 2).1;
-    let (full, filled) = (of(""), of(&(bubble.clone() + &sphere("fill", "water", [0.0; 3], 0.1, "priority = 1"))));
+    let (full, filled) =
+        (of(""), of(&(bubble.clone() + &sphere("fill", "water", [0.0; 3], 0.1, "priority = 1"))));
     assert_eq!(full.value, filled.value, "water in the bubble is as no bubble");
     let hollow = of(&(bubble.clone() + &sphere("fill", "water", [0.0; 3], 0.1, "priority = -1")));
     assert_eq!(hollow.value, of(&bubble).value, "the bubble wins over its filling");
@@ -259,7 +263,8 @@ fn a_bubble_and_a_sphere_that_fills_it() {
 #[test]
 fn bodies_touch_under_water_and_liquid_in_a_box() {
     // Two blocks of glass in contact in water have a film of water, or none.
-    for (contact, middle) in [("contact = \"film\"", &[1.5, 1.333, 1.5][..]), ("contact = \"glued\"", &[1.5])] {
+    for (contact, middle) in [("contact = \"film\"", &[1.5, 1.333, 1.5][..]), ("contact = \"glued\"", &[1.5])]
+    {
         let text = [LAMP, GLASS, WATER, BLACK].concat()
             + &cuboid("pool", "water", [-0.3; 3], [0.3; 3], "")
             + &slab("lower", "glass", -0.1, 0.0, contact)
@@ -296,7 +301,8 @@ fn an_open_surface_changes_the_medium_and_bodies_stand_in_it() {
         + &receiver("floor");
     assert_flux("block in water", &text, 1000.0 * passed(&[1.333, 1.5, 1.333]));
     // A lamp under the surface shines up.
-    let lamp = LAMP.replace("[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.1]").replace("-1.0]", "1.0]") + "medium = \"water\"\n";
+    let lamp =
+        LAMP.replace("[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.1]").replace("-1.0]", "1.0]") + "medium = \"water\"\n";
     let text = [&lamp, WATER, BLACK].concat()
         + &sheet("pond", "water", 0.4, true)
         + &sheet("ceiling", "black", 1.0, false)
@@ -305,7 +311,14 @@ fn an_open_surface_changes_the_medium_and_bodies_stand_in_it() {
     assert_total("a lamp in a pond", &outcome, estimate, 1000.0 * (1.0 - (0.333f64 / 2.333).powi(2)));
     assert_eq!(outcome.census.exceptions.contradicted.len(), 0);
     let unsaid = scene(&text.replace("medium = \"water\"\n", ""));
-    assert!(flux(&unsaid, 1 << 10, 4).0.census.exceptions.contradicted.contains_key(&caustix::geometry::SurfaceId(0)));
+    assert!(
+        flux(&unsaid, 1 << 10, 4)
+            .0
+            .census
+            .exceptions
+            .contradicted
+            .contains_key(&caustix::geometry::SurfaceId(0))
+    );
 }
 
 #[test]

@@ -75,7 +75,7 @@ fn the_exact_algorithm_finds_closed_forms() {
 #[test]
 fn halton_in_bases_2_and_3_has_the_published_discrepancy() {
     for (count, published) in [(10, 0.26667), (100, 0.05024), (1000, 0.00685)] {
-        let found = star_discrepancy(&plane(&HaltonPoints::new(), 1..count + 1, [0, 1]));
+        let found = star_discrepancy(&plane(&HaltonPoints::plain(), 1..count + 1, [0, 1]));
         assert!((found - published).abs() <= 5.001e-6, "{count}: {found}");
     }
 }
@@ -113,7 +113,7 @@ fn sixteenths(count: u64, point: impl Fn(u64) -> [u64; 4]) -> Vec<u64> {
 #[test]
 fn consecutive_pairs_are_no_points_of_four_dimensions() {
     // Points 2k and 2k + 1 of the plane as one of four dimensions: base 2 puts the even ones on the left, always.
-    let halton = HaltonPoints::new();
+    let halton = HaltonPoints::plain();
     let plane = |i| [halton.coordinate(i, 0), halton.coordinate(i, 1)];
     let good = sixteenths(4096, |i| [0, 1, 2, 3].map(|c| halton.coordinate(i, c)));
     let bad = sixteenths(4096, |k| {

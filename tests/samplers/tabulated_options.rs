@@ -81,7 +81,13 @@ fn what_a_table_leaves_goes_on_where_it_is_asked_to() {
         let points = IndependentPoints::new(5, 0);
         let (n, mut specular) = (20_000u64, 0.0);
         for i in 0..n {
-            let at = Incidence { direction: -wi, facet: DVec3::Z, smooth: DVec3::Z, front: true, indices: [1.0; 2] };
+            let at = Incidence {
+                direction: -wi,
+                facet: DVec3::Z,
+                smooth: DVec3::Z,
+                front: true,
+                indices: [1.0; 2],
+            };
             match t.scatter(&at, &mut Coordinates::new(&points, i, true), &mut Grey) {
                 Event::Leaves { direction, through, .. } => {
                     assert_eq!(through, quantity == Quantity::Transmission);

@@ -1,11 +1,15 @@
 //! Parts that a study has finished, and what names them.
 
+use indicatif::ProgressBar;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::cli::progress::Progress;
-use crate::cli::say;
+use super::CompareArgs;
+use crate::cli::progress::{catch_interrupts, progress_bar};
+use crate::cli::render::FOR_RESULTS;
+use crate::cli::{exit, print, say};
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::atomic::{make_directory, write_each};
 use crate::files::parts::{Found, Parts};
 use crate::lab::study::REVISION;
 use crate::scene::Scene;
@@ -21,16 +25,81 @@ pub fn scene_key(scene: &Scene) -> String {
     key
 }
 
-/// A part that is there and whole; one that is damaged is told, and made again.
-pub fn found(parts: &Parts, progress: &Progress, kind: &str, key: &str) -> Option<Vec<u8>> {
-    match parts.load(kind, key) {
-        Found::Whole(content) => Some(content),
-        Found::Missing => None,
-        Found::Damaged(diagnostic) => {
-            progress.aside(|| say(&format!("warning: {diagnostic}")));
-            None
+/// The parts that a study keeps, and the bar over its photons.
+pub struct Kept {
+    pub parts: Parts,
+    pub progress: ProgressBar,
+}
+
+impl Kept {
+    /// Makes the folder of a study of so many photons, and catches Ctrl-C.
+    ///
+    /// # Errors
+    /// A folder that cannot be made.
+    pub fn start(args: &CompareArgs, photons: u64) -> Result<Self> {
+        make_directory(&args.output, FOR_RESULTS)?;
+        catch_interrupts();
+        let parts = Parts::new(args.output.join("parts"));
+        Ok(Self { parts, progress: progress_bar(args.quiet, photons) })
+    }
+
+    /// A part that is there and whole; one that is damaged is told, and made again.
+    pub fn found(&self, kind: &str, key: &str) -> Option<Vec<u8>> {
+        match self.parts.load(kind, key) {
+            Found::Whole(content) => Some(content),
+            Found::Missing => None,
+            Found::Damaged(diagnostic) => {
+                self.progress.suspend(|| say(&format!("warning: {diagnostic}")));
+                None
+            }
         }
     }
+
+    /// A part in JSON, of so many photons: the one that is there, else one that is made, and kept; `None` where it was not finished.
+    ///
+    /// # Errors
+    /// Those of making it; a file that cannot be written.
+    pub fn part<T: Serialize + DeserializeOwned>(
+        &self,
+        kind: &str,
+        key: &str,
+        photons: u64,
+        make: impl FnOnce(&(dyn Fn(u64) + Sync)) -> Result<Option<T>>,
+    ) -> Result<Option<T>> {
+        let found = self.found(kind, key).and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        if found.is_some() {
+            self.progress.inc(photons);
+            return Ok(found);
+        }
+        let made = make(&|n| self.progress.inc(n))?;
+        if let Some(part) = &made {
+            let bytes = serde_json::to_vec_pretty(part).map_err(|e| {
+                Diagnostic::new(Kind::Io, format!("\"{e}\" while writing a {kind}"), "a part as text")
+            })?;
+            self.parts.store(kind, key, &bytes)?;
+        }
+        Ok(made)
+    }
+
+    /// Says how to go on after an interrupt, and what there is by then; the exit code.
+    pub fn interrupted(&self, what: &str) -> u8 {
+        let folder = self.parts.directory().display();
+        say(&format!("caustix: interrupted; {what}. The same command goes on from the parts in {folder}"));
+        exit::INTERRUPTED
+    }
+}
+
+/// Writes the files of a study, and prints what it found.
+///
+/// # Errors
+/// Files that cannot be written; they keep no other from being.
+pub fn write_study(args: &CompareArgs, files: &[(&str, String)], text: &str) -> Result<(), Vec<Diagnostic>> {
+    let (_, errors) = write_each(&args.output, files);
+    if !args.quiet {
+        print(text);
+        print(&format!("written to {}\n", args.output.display()));
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
 /// The command as it was typed, without the folder that the program lies in.
@@ -41,25 +110,4 @@ pub fn command_line() -> String {
     };
     let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
     std::iter::once("caustix".to_string()).chain(words).collect::<Vec<_>>().join(" ")
-}
-
-/// The same of a part in JSON.
-pub fn found_json<T: DeserializeOwned>(
-    parts: &Parts,
-    progress: &Progress,
-    kind: &str,
-    key: &str,
-) -> Option<T> {
-    serde_json::from_slice(&found(parts, progress, kind, key)?).ok()
-}
-
-/// Keeps a part as JSON.
-///
-/// # Errors
-/// A file that cannot be written.
-pub fn store_json(parts: &Parts, kind: &str, key: &str, part: &impl Serialize) -> Result<()> {
-    let bytes = serde_json::to_vec_pretty(part).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while writing a {kind}"), "a part as text")
-    })?;
-    parts.store(kind, key, &bytes)
 }

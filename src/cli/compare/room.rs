@@ -2,62 +2,46 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
-use crate::cli::render::{make_directory, thread_pool};
-use crate::cli::{Done, exit, print, say};
+use crate::cli::progress::{INTERRUPTED, processor_time};
+use crate::cli::render::thread_pool;
+use crate::cli::{Done, exit};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::write_each;
-use crate::files::parts::Parts;
 use crate::lab::room::measure::measure;
 use crate::lab::room::{Measurement, Options, RoomStudy, Task};
 use crate::report::room::{csv, deviations_csv, markdown, text};
 use crate::scene::Scene;
 
-use super::parts::{command_line, found_json, scene_key, store_json};
+use super::parts::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
 /// Runs the study; the exit code.
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     refuse_what_has_no_meaning(args)?;
     let options = Options::new(Options::paper_ladder(args.full), seeds(args)?)?;
-    make_directory(&args.output)?;
-    catch_interrupts();
+    let kept = Kept::start(args, options.photons())?;
     let pool = thread_pool(args.threads)?;
-    let progress = Progress::new(args.quiet, options.photons());
-    let parts = Parts::new(args.output.join("parts"));
     let mut measurements = Vec::new();
     for task in options.tasks() {
-        progress.say(task.to_string());
-        match pool.install(|| measurement(scene, &task, &parts, &progress)) {
-            Ok(measurement) => measurements.push(measurement),
+        kept.progress.set_message(task.to_string());
+        match pool.install(|| measurement(scene, &task, &kept)) {
+            Ok(measurement) => measurements.extend(measurement),
             Err(e) if e.kind() == Kind::Interrupted => break,
             Err(e) => return Err(e.into()),
         }
     }
-    progress.finish();
+    kept.progress.finish_and_clear();
     if INTERRUPTED.load(Ordering::Relaxed) {
-        say(&format!(
-            "caustix: interrupted; {} of {} measurements are done. The same command goes on from the parts in {}",
-            measurements.len(),
-            options.tasks().len(),
-            parts.directory().display()
-        ));
-        return Ok(exit::INTERRUPTED);
+        let (done, all) = (measurements.len(), options.tasks().len());
+        return Ok(kept.interrupted(&format!("{done} of {all} measurements are done")));
     }
     let study = RoomStudy::new(scene, &options, &measurements)?;
-    let (_, errors) = write_each(
-        &args.output,
-        &[
-            ("compare.csv", csv(&study)),
-            ("compare.md", markdown(&study, &command_line())),
-            ("deviations.csv", deviations_csv(&study)),
-        ],
-    );
-    if !args.quiet {
-        print(&text(&study));
-        print(&format!("written to {}\n", args.output.display()));
-    }
-    if errors.is_empty() { Ok(exit::DONE) } else { Err(errors.into()) }
+    let files = [
+        ("compare.csv", csv(&study)),
+        ("compare.md", markdown(&study, &command_line())),
+        ("deviations.csv", deviations_csv(&study)),
+    ];
+    write_study(args, &files, &text(&study))?;
+    Ok(exit::DONE)
 }
 
 /// The numbers of photons and the sequences of this study are the paper's.
@@ -79,13 +63,9 @@ fn refuse_what_has_no_meaning(args: &CompareArgs) -> Result<()> {
     }
 }
 
-fn measurement(scene: &Scene, task: &Task, parts: &Parts, progress: &Progress) -> Result<Measurement> {
+fn measurement(scene: &Scene, task: &Task, kept: &Kept) -> Result<Option<Measurement>> {
     let key = format!("{}\nroom: {task}", scene_key(scene));
-    if let Some(kept) = found_json(parts, progress, "room", &key) {
-        progress.add(task.photons);
-        return Ok(kept);
-    }
-    let measured = measure(scene, task, processor_time, &INTERRUPTED, &|n| progress.add(n))?;
-    store_json(parts, "room", &key, &measured)?;
-    Ok(measured)
+    kept.part("room", &key, task.photons, |progress| {
+        measure(scene, task, processor_time, &INTERRUPTED, progress).map(Some)
+    })
 }

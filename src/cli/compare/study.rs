@@ -2,12 +2,11 @@
 
 use std::sync::atomic::Ordering;
 
-use crate::cli::progress::{INTERRUPTED, Progress, catch_interrupts, processor_time};
-use crate::cli::render::{make_directory, thread_pool};
-use crate::cli::{Done, count, exit, print, say};
+use crate::cli::progress::{INTERRUPTED, processor_time};
+use crate::cli::render::thread_pool;
+use crate::cli::{Done, count, exit};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::write_each;
-use crate::files::parts::{Parts, from_bytes, to_bytes};
+use crate::files::parts::{from_bytes, to_bytes};
 use crate::lab::study::account::Events;
 use crate::lab::study::cells::Grids;
 use crate::lab::study::reference::{
@@ -24,7 +23,7 @@ use crate::report::compare::text::text;
 use crate::run::{Algorithm, MAX_PHOTONS, Variant};
 use crate::scene::Scene;
 
-use super::parts::{command_line, found, found_json, scene_key, store_json};
+use super::parts::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
 /// Photons of each run where none is named.
@@ -47,41 +46,25 @@ const FULL: [&str; 7] = [
 /// Makes the study as far as it gets; the exit code.
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     let asked = Asked::new(args, scene)?;
-    make_directory(&args.output)?;
-    catch_interrupts();
+    let kept = Kept::start(args, asked.work())?;
     let pool = thread_pool(args.threads)?;
-    let progress = Progress::new(args.quiet, asked.work());
-    let job = Job { scene, asked, parts: Parts::new(args.output.join("parts")), progress: &progress };
+    let job = Job { scene, asked, kept };
     let study = pool.install(|| job.study(args))?;
-    progress.finish();
+    job.kept.progress.finish_and_clear();
     if let Some(study) = &study {
         let table = Table::new(study);
-        let (_, errors) = write_each(
-            &args.output,
-            &[
-                ("compare.csv", csv(study, &table)),
-                ("compare.md", markdown(study, &table)),
-                ("compare.svg", drawing(study, &table).to_svg()),
-            ],
-        );
-        if !args.quiet {
-            print(&text(study, &table));
-            print(&format!("written to {}\n", args.output.display()));
-        }
-        if !errors.is_empty() {
-            return Err(errors.into());
-        }
+        let files = [
+            ("compare.csv", csv(study, &table)),
+            ("compare.md", markdown(study, &table)),
+            ("compare.svg", drawing(study, &table).to_svg()),
+        ];
+        write_study(args, &files, &text(study, &table))?;
     }
-    if !INTERRUPTED.load(Ordering::Relaxed) {
-        return Ok(exit::DONE);
-    }
-    let what =
-        if study.is_some() { "the runs finished by then are in the table" } else { "no run was finished" };
-    say(&format!(
-        "caustix: interrupted; {what}. The same command goes on from the parts in {}",
-        job.parts.directory().display()
-    ));
-    Ok(exit::INTERRUPTED)
+    Ok(match study {
+        _ if !INTERRUPTED.load(Ordering::Relaxed) => exit::DONE,
+        Some(_) => job.kept.interrupted("the runs finished by then are in the table"),
+        None => job.kept.interrupted("no run was finished"),
+    })
 }
 
 /// What is asked for, made definite.
@@ -104,11 +87,8 @@ impl<'s> Asked<'s> {
         let photons = count("--photons", args.photons.as_ref())?.unwrap_or(DEFAULT_PHOTONS);
         let from = count("--from", args.from.as_ref())?.unwrap_or((photons >> LADDER_OCTAVES).max(1));
         if photons == 0 || photons > MAX_PHOTONS || from == 0 || from > photons {
-            return Err(Diagnostic::new(
-                Kind::Range,
-                format!("errors from {from} to {photons} photons"),
-                "1 to 2^48 photons, rising",
-            ));
+            let found = format!("errors from {from} to {photons} photons");
+            return Err(Diagnostic::new(Kind::Range, found, "1 to 2^48 photons, rising"));
         }
         let seeds = seeds(args)?;
         let reference_photons = count("--reference-photons", args.reference_photons.as_ref())?
@@ -154,11 +134,8 @@ fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
     for name in names {
         let algorithm = Algorithm::parse(name.trim())?;
         if algorithms.contains(&algorithm) {
-            return Err(Diagnostic::new(
-                Kind::Range,
-                format!("variant {name} twice"),
-                "every variant once in --variants",
-            ));
+            let found = format!("variant {name} twice");
+            return Err(Diagnostic::new(Kind::Range, found, "every variant once in --variants"));
         }
         algorithms.push(algorithm);
     }
@@ -169,8 +146,7 @@ fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
 struct Job<'a> {
     scene: &'a Scene,
     asked: Asked<'a>,
-    parts: Parts,
-    progress: &'a Progress,
+    kept: Kept,
 }
 
 impl Job<'_> {
@@ -231,20 +207,19 @@ impl Job<'_> {
         let cells = self.asked.grids.cell_count();
         let mut replicates = Vec::new();
         for replicate in 0..REPLICATES {
-            self.progress.say(format!("reference {} of {REPLICATES}", replicate + 1));
+            self.kept.progress.set_message(format!("reference {} of {REPLICATES}", replicate + 1));
             let part = format!("{key}\nreplicate {replicate}");
-            let found = found(&self.parts, self.progress, "reference", &part)
-                .and_then(|bytes| from_bytes(&bytes, cells));
-            if let Some(counts) = found {
-                self.progress.add(plan.photons_per_replicate);
+            let found = self.kept.found("reference", &part);
+            if let Some(counts) = found.and_then(|bytes| from_bytes(&bytes, cells)) {
+                self.kept.progress.inc(plan.photons_per_replicate);
                 replicates.push(counts);
                 continue;
             }
             let traced = trace_replicate(&self.asked.grids, plan, replicate, &INTERRUPTED, &|n| {
-                self.progress.add(n);
+                self.kept.progress.inc(n);
             })?;
             let Some(counts) = traced else { return Ok(None) };
-            self.parts.store("reference", &part, &to_bytes(&counts))?;
+            self.kept.parts.store("reference", &part, &to_bytes(&counts))?;
             replicates.push(counts);
         }
         Ok(Some((Reference::new(&self.asked.grids, plan, &replicates)?, key)))
@@ -260,7 +235,12 @@ impl Job<'_> {
                 if !asked.seeds_of(*algorithm).contains(seed) {
                     continue;
                 }
-                self.progress.say(format!("{}, seed {} of {}", algorithm.name(), k + 1, asked.seeds.len()));
+                self.kept.progress.set_message(format!(
+                    "{}, seed {} of {}",
+                    algorithm.name(),
+                    k + 1,
+                    asked.seeds.len()
+                ));
                 match self.run(reference, *algorithm, *seed, reference_key)? {
                     Some(found) => runs_of.extend(found),
                     None => return Ok(runs),
@@ -280,16 +260,8 @@ impl Job<'_> {
     ) -> Result<Option<Vec<Run>>> {
         let asked = &self.asked;
         let key = format!("{reference_key}\nrun: {} seed {seed}, N {:?}", algorithm.name(), asked.ladder);
-        if let Some(found) = found_json(&self.parts, self.progress, "run", &key) {
-            self.progress.add(asked.photons_of(algorithm));
-            return Ok(Some(found));
-        }
-        let progress = |n| self.progress.add(n);
-        let traced =
-            reference.measure(algorithm, seed, &asked.ladder, processor_time, &INTERRUPTED, &progress)?;
-        if let Some(traced) = &traced {
-            store_json(&self.parts, "run", &key, traced)?;
-        }
-        Ok(traced)
+        self.kept.part("run", &key, asked.photons_of(algorithm), |progress| {
+            reference.measure(algorithm, seed, &asked.ladder, processor_time, &INTERRUPTED, progress)
+        })
     }
 }

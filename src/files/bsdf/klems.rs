@@ -18,7 +18,8 @@
 use roxmltree::{Document, Node, ParsingOptions};
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::bsdf::words::{Words, quoted, value};
+use crate::files::bsdf::words::{self, Word, Words, value};
+use crate::files::excerpt::quoted;
 use crate::scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 
 /// XML nodes a file may have; a file with four directions has below 500.
@@ -42,17 +43,20 @@ struct Basis {
     rings: Vec<Ring>,
 }
 
-/// Reads the bytes of a file; `name` stands in messages and is the table's name unless the file has one.
+/// The directions that a file may have, by its own words for them.
+const DIRECTIONS: [(&str, Quantity, LobeSide); 4] = [
+    ("Transmission Front", Quantity::Transmission, LobeSide::Front),
+    ("Transmission Back", Quantity::Transmission, LobeSide::Back),
+    ("Reflection Front", Quantity::Reflection, LobeSide::Front),
+    ("Reflection Back", Quantity::Reflection, LobeSide::Back),
+];
+
+/// Reads the bytes of a file; `name` is the table's name unless the file has one.
 ///
 /// # Errors
-/// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Unknown`], [`Kind::Unavailable`], [`Kind::Range`] or [`Kind::Limit`] with file
-/// and place.
+/// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Unknown`], [`Kind::Unavailable`], [`Kind::Range`] or [`Kind::Limit`] with a place.
 pub fn parse(bytes: &[u8], name: &str) -> Result<ScatterTable> {
-    read(bytes, name).map_err(|d| d.in_file(name))
-}
-
-fn read(bytes: &[u8], name: &str) -> Result<ScatterTable> {
-    let text = crate::files::bsdf::words::decode(bytes);
+    let text = String::from_utf8_lossy(bytes);
     let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(&text, options).map_err(|e| {
         let at = e.pos();
@@ -64,11 +68,10 @@ fn read(bytes: &[u8], name: &str) -> Result<ScatterTable> {
         return Err(refuse(&root, Kind::Unknown, root.tag_name().name(), "WindowElement"));
     }
     let layer =
-        root.descendants().find(|n| n.tag_name().name() == "Layer" && child(n, "WavelengthData").is_some());
+        root.descendants().find(|n| n.tag_name().name() == "Layer" && child(n, "WavelengthData").is_ok());
     let layer = layer.ok_or_else(|| missing(&root, "a Layer with WavelengthData"))?;
-    let definition = child(&layer, "DataDefinition").ok_or_else(|| missing(&layer, "DataDefinition"))?;
-    let structure = child(&definition, "IncidentDataStructure");
-    let structure = structure.ok_or_else(|| missing(&definition, "IncidentDataStructure"))?;
+    let definition = child(&layer, "DataDefinition")?;
+    let structure = child(&definition, "IncidentDataStructure")?;
     let columns = match text_of(&structure) {
         t if t.eq_ignore_ascii_case("Columns") => true,
         t if t.eq_ignore_ascii_case("Rows") => false,
@@ -81,12 +84,12 @@ fn read(bytes: &[u8], name: &str) -> Result<ScatterTable> {
     let bases = bases(&definition)?;
     let mut warnings = Vec::new();
     let mut lobes: Vec<LobeData> = Vec::new();
-    for data in layer.children().filter(|n| n.tag_name().name() == "WavelengthData") {
+    for data in children(&layer, "WavelengthData") {
         if !is_luminous(&data, &mut warnings) {
             continue;
         }
-        for block in data.children().filter(|n| n.tag_name().name() == "WavelengthDataBlock") {
-            if lobes.len() == 4 {
+        for block in children(&data, "WavelengthDataBlock") {
+            if lobes.len() == DIRECTIONS.len() {
                 return Err(refuse(&block, Kind::Limit, "a fifth direction", "four of them, each once"));
             }
             lobes.push(direction(&text, &block, &bases, columns)?);
@@ -95,7 +98,13 @@ fn read(bytes: &[u8], name: &str) -> Result<ScatterTable> {
     if lobes.is_empty() {
         return Err(missing(&layer, "WavelengthData of visible light"));
     }
-    say_missing(&layer, &lobes, &mut warnings);
+    let mut absent = DIRECTIONS.to_vec();
+    absent.retain(|(_, quantity, side)| !lobes.iter().any(|l| (l.quantity, l.side) == (*quantity, *side)));
+    if !absent.is_empty() {
+        let names = absent.iter().map(|(name, ..)| *name).collect::<Vec<_>>().join(", ");
+        let d = Diagnostic::new(Kind::Missing, format!("no {names}"), "all four directions");
+        warnings.push(place(&layer, d.hint("light that would take one of them is absorbed")));
+    }
     let material = layer.descendants().find(|n| n.tag_name().name() == "Name").map(|n| text_of(&n));
     let title = material.filter(|n| !n.is_empty()).unwrap_or(name);
     let title: String = title.chars().take(200).collect();
@@ -116,8 +125,12 @@ fn missing(node: &Node, what: &str) -> Diagnostic {
     place(node, Diagnostic::new(Kind::Missing, found, what))
 }
 
-fn child<'a, 'i>(node: &Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
-    node.children().find(|n| n.tag_name().name() == name)
+fn children<'a, 'i>(node: &Node<'a, 'i>, name: &str) -> impl Iterator<Item = Node<'a, 'i>> {
+    node.children().filter(move |n| n.tag_name().name() == name)
+}
+
+fn child<'a, 'i>(node: &Node<'a, 'i>, name: &str) -> Result<Node<'a, 'i>> {
+    children(node, name).next().ok_or_else(|| missing(node, name))
 }
 
 fn text_of<'a>(node: &Node<'a, '_>) -> &'a str {
@@ -139,11 +152,11 @@ fn is_luminous(data: &Node, warnings: &mut Vec<Diagnostic>) -> bool {
 /// The bases that the file defines, and the three of LBNL.
 fn bases(definition: &Node) -> Result<Vec<Basis>> {
     let mut list = Vec::new();
-    for node in definition.children().filter(|n| n.tag_name().name() == "AngleBasis") {
-        let name = child(&node, "AngleBasisName").ok_or_else(|| missing(&node, "AngleBasisName"))?;
+    for node in children(definition, "AngleBasis") {
+        let name = child(&node, "AngleBasisName")?;
         let (mut rings, mut patches) = (Vec::<Ring>::new(), 0);
-        for block in node.children().filter(|n| n.tag_name().name() == "AngleBasisBlock") {
-            let bounds = child(&block, "ThetaBounds").ok_or_else(|| missing(&block, "ThetaBounds"))?;
+        for block in children(&node, "AngleBasisBlock") {
+            let bounds = child(&block, "ThetaBounds")?;
             let (from, to) = (number(&bounds, "LowerTheta")?, number(&bounds, "UpperTheta")?);
             let count = number(&block, "nPhis")?;
             let whole = count >= 1.0 && count <= MAX_PATCHES as f64 && count.fract() == 0.0;
@@ -163,50 +176,41 @@ fn bases(definition: &Node) -> Result<Vec<Basis>> {
         }
         list.push(Basis { name: text_of(&name).to_owned(), rings });
     }
-    let known = |name: &str, edges: &[f64], counts: &[usize]| Basis {
+    list.extend(LBNL.map(|(name, edges, counts)| Basis {
         name: name.to_owned(),
         rings: edges.windows(2).zip(counts).map(|(e, n)| (e[0], e[1], *n)).collect(),
-    };
-    // J. H. Klems' bases as LBNL uses them.
-    list.push(known(
-        "LBNL/Klems Full",
-        &[0.0, 5.0, 15.0, 25.0, 35.0, 45.0, 55.0, 65.0, 75.0, 90.0],
-        &[1, 8, 16, 20, 24, 24, 24, 16, 12],
-    ));
-    list.push(known(
-        "LBNL/Klems Half",
-        &[0.0, 6.5, 19.5, 32.5, 46.5, 61.5, 76.5, 90.0],
-        &[1, 8, 12, 16, 20, 12, 4],
-    ));
-    list.push(known("LBNL/Klems Quarter", &[0.0, 9.0, 27.0, 46.0, 66.0, 90.0], &[1, 8, 12, 12, 8]));
+    }));
     Ok(list)
 }
 
+/// J. H. Klems' bases as LBNL uses them: name, edges of the rings, patches of each.
+const LBNL: [(&str, &[f64], &[usize]); 3] = [
+    (
+        "LBNL/Klems Full",
+        &[0.0, 5.0, 15.0, 25.0, 35.0, 45.0, 55.0, 65.0, 75.0, 90.0],
+        &[1, 8, 16, 20, 24, 24, 24, 16, 12],
+    ),
+    ("LBNL/Klems Half", &[0.0, 6.5, 19.5, 32.5, 46.5, 61.5, 76.5, 90.0], &[1, 8, 12, 16, 20, 12, 4]),
+    ("LBNL/Klems Quarter", &[0.0, 9.0, 27.0, 46.0, 66.0, 90.0], &[1, 8, 12, 12, 8]),
+];
+
 fn number(parent: &Node, name: &str) -> Result<f64> {
-    let node = child(parent, name).ok_or_else(|| missing(parent, name))?;
+    let node = child(parent, name)?;
     let text = text_of(&node);
-    let word = crate::files::bsdf::words::Word { text, line: 1, column: 1 };
-    crate::files::bsdf::words::number(&word, name).map_err(|d| place(&node, d))
+    words::number(&Word { text, within: text, byte: 0 }, name).map_err(|d| place(&node, d))
 }
 
 /// One WavelengthDataBlock as a lobe.
 fn direction(text: &str, block: &Node, bases: &[Basis], columns: bool) -> Result<LobeData> {
-    let node = |name: &str| child(block, name).ok_or_else(|| missing(block, name));
-    let direction = node("WavelengthDataDirection")?;
-    let words: Vec<&str> = text_of(&direction).split_whitespace().collect();
-    let is = |i: usize, name: &str| words.get(i).is_some_and(|w: &&str| w.eq_ignore_ascii_case(name));
-    let quantity = match () {
-        () if is(0, "Reflection") => Some(Quantity::Reflection),
-        () if is(0, "Transmission") => Some(Quantity::Transmission),
-        () => None,
-    };
-    let front = is(1, "Front");
-    let Some(quantity) = quantity.filter(|_| words.len() == 2 && (front || is(1, "Back"))) else {
+    let named = child(block, "WavelengthDataDirection")?;
+    let words = text_of(&named).split_whitespace().collect::<Vec<_>>().join(" ");
+    let known = DIRECTIONS.iter().find(|(name, ..)| words.eq_ignore_ascii_case(name));
+    let Some(&(_, quantity, side)) = known else {
         let required = "Transmission or Reflection, and Front or Back";
-        return Err(refuse(&direction, Kind::Unknown, text_of(&direction), required));
+        return Err(refuse(&named, Kind::Unknown, text_of(&named), required));
     };
     let basis = |name: &str| -> Result<&Basis> {
-        let node = node(name)?;
+        let node = child(block, name)?;
         let found = bases.iter().find(|b| b.name.eq_ignore_ascii_case(text_of(&node)));
         found.ok_or_else(|| {
             refuse(&node, Kind::Unknown, text_of(&node), "an angle basis that the file defines")
@@ -214,18 +218,17 @@ fn direction(text: &str, block: &Node, bases: &[Basis], columns: bool) -> Result
     };
     let (across, down) = (basis("ColumnAngleBasis")?, basis("RowAngleBasis")?);
     let (incident, scattered) = if columns { (across, down) } else { (down, across) };
-    let data = node("ScatteringData")?;
+    let data = child(block, "ScatteringData")?;
     let values = matrix(text, &data, incident.patches() * scattered.patches())?;
     let matrix = Matrix { incident, scattered, columns, values };
-    matrix.lobe(quantity, front).map_err(|d| place(&data, d))
+    matrix.lobe(quantity, side).map_err(|d| place(&data, d))
 }
 
 /// The numbers of a matrix; places are those of the file.
 fn matrix(text: &str, data: &Node, count: usize) -> Result<Vec<f32>> {
     let content = data.children().find(|n| n.is_text()).ok_or_else(|| missing(data, "numbers"))?;
-    let start = content.document().text_pos_at(content.range().start);
-    let mut words = Words::from_place(&text[content.range()], start.row as usize, start.col as usize);
-    if count > words.room() {
+    let mut words = Words::between(text, content.range());
+    if !words.have_room_for(count) {
         let found = format!("a matrix too short for the {count} values of its bases");
         return Err(place(data, Diagnostic::new(Kind::Missing, found, "all values")));
     }
@@ -237,8 +240,7 @@ fn matrix(text: &str, data: &Node, count: usize) -> Result<Vec<f32>> {
         values.push(value(&word)?);
     }
     if values.len() < count {
-        let d = Diagnostic::new(Kind::Missing, format!("{} values", values.len()), format!("{count} values"));
-        return Err(words.place(d));
+        return Err(words.missing(format!("{} values", values.len()), format!("{count} values")));
     }
     Ok(values)
 }
@@ -294,7 +296,7 @@ impl Matrix<'_> {
         sum / (to - from)
     }
 
-    fn lobe(&self, quantity: Quantity, front: bool) -> Result<LobeData> {
+    fn lobe(&self, quantity: Quantity, side: LobeSide) -> Result<LobeData> {
         let sectors = self.scattered.fullest();
         let half = 180.0 / sectors as f64;
         let azimuth_deg = stairs(sectors, half);
@@ -309,7 +311,7 @@ impl Matrix<'_> {
         let mut values = Vec::with_capacity(Lobe::value_count(counts)?);
         let rings: Vec<(Ring, usize)> = self.scattered.numbered().collect();
         // About the front's normal the file's azimuths run clockwise.
-        let sign = if front { -1.0 } else { 1.0 };
+        let sign = if side == LobeSide::Front { -1.0 } else { 1.0 };
         for phi_i in &incidences {
             // The file's azimuth of an incident patch is that of the direction in which the light goes on.
             let azimuth = sign * phi_i - 180.0;
@@ -331,7 +333,7 @@ impl Matrix<'_> {
         }
         Ok(LobeData {
             quantity,
-            side: if front { LobeSide::Front } else { LobeSide::Back },
+            side,
             frame: Frame::Surface,
             theta_i_deg,
             phi_i_deg: incidences,
@@ -367,22 +369,4 @@ fn polar_nodes(rings: &[Ring]) -> (Vec<f64>, Vec<usize>) {
         }
     }
     (nodes, ring_of)
-}
-
-/// Directions that the file does not have.
-fn say_missing(layer: &Node, lobes: &[LobeData], warnings: &mut Vec<Diagnostic>) {
-    let all = [
-        (Quantity::Transmission, LobeSide::Front, "Transmission Front"),
-        (Quantity::Transmission, LobeSide::Back, "Transmission Back"),
-        (Quantity::Reflection, LobeSide::Front, "Reflection Front"),
-        (Quantity::Reflection, LobeSide::Back, "Reflection Back"),
-    ];
-    let lacks = |(quantity, side, _): &&(Quantity, LobeSide, &str)| {
-        !lobes.iter().any(|l| l.quantity == *quantity && l.side == *side)
-    };
-    let names: Vec<&str> = all.iter().filter(lacks).map(|(_, _, name)| *name).collect();
-    if !names.is_empty() {
-        let d = Diagnostic::new(Kind::Missing, format!("no {}", names.join(", ")), "all four directions");
-        warnings.push(place(layer, d.hint("light that would take one of them is absorbed")));
-    }
 }

@@ -29,24 +29,16 @@ pub(crate) fn is_merl(bytes: &[u8]) -> bool {
     bytes.get(..12).is_some_and(|b| counts(b) == [THETA_H, THETA_D, PHI_D])
 }
 
-fn counts(header: &[u8]) -> [usize; 3] {
-    let mut counts = [0; 3];
-    for (count, bytes) in counts.iter_mut().zip(header.chunks_exact(4)) {
-        *count = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as usize;
-    }
-    counts
+fn counts(header: &[u8]) -> Vec<usize> {
+    header.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes) as usize).collect()
 }
 
-/// Reads the bytes of a file; `name` stands in messages and is the table's name.
+/// Reads the bytes of a file; `name` is the table's name.
 ///
 /// # Errors
 /// [`Kind::Syntax`] for other counts, [`Kind::Missing`] or [`Kind::Limit`] for another length, [`Kind::Range`] for a value
 /// that is not finite.
 pub fn parse(bytes: &[u8], name: &str) -> Result<ScatterTable> {
-    resample(bytes, name).map_err(|d| d.in_file(name))
-}
-
-fn resample(bytes: &[u8], name: &str) -> Result<ScatterTable> {
     if !is_merl(bytes) {
         let found = match bytes.get(..12) {
             Some(header) => format!("counts {:?}", counts(header)),
@@ -58,8 +50,12 @@ fn resample(bytes: &[u8], name: &str) -> Result<ScatterTable> {
         let kind = if bytes.len() < FILE_BYTES { Kind::Missing } else { Kind::Limit };
         return Err(Diagnostic::new(kind, format!("{} bytes", bytes.len()), format!("{FILE_BYTES} bytes")));
     }
-    let file = Bins(&bytes[12..]);
-    file.check()?;
+    let file = Bins(bytes[12..].as_chunks().0);
+    let storable = |v: f64| v.is_finite() && v * SCALES[2] < f64::from(f32::MAX);
+    if let Some(bad) = (0..3 * BINS).find(|i| !storable(file.raw(0, *i))) {
+        let found = format!("{} at byte {}", file.raw(0, bad), 12 + 8 * bad);
+        return Err(Diagnostic::new(Kind::Range, found, "finite values that single precision holds"));
+    }
     let (theta_i, polar, azimuth) = (theta_i_deg(), polar_deg(), steps(0.0, 5.0, 73));
     let mut values = vec![0.0f32; 3 * theta_i.len() * polar.len() * azimuth.len()];
     let nodes = values.len() / 3;
@@ -137,28 +133,11 @@ fn half_difference(theta_i_deg: f64, polar_deg: f64, azimuth_deg: f64) -> Option
 }
 
 /// The doubles of a file.
-struct Bins<'a>(&'a [u8]);
+struct Bins<'a>(&'a [[u8; 8]]);
 
 impl Bins<'_> {
     fn raw(&self, channel: usize, bin: usize) -> f64 {
-        let at = 8 * (channel * BINS + bin);
-        let mut bytes = [0; 8];
-        bytes.copy_from_slice(&self.0[at..at + 8]);
-        f64::from_le_bytes(bytes)
-    }
-
-    fn check(&self) -> Result<()> {
-        let finite = |i: &usize| {
-            let v = self.raw(0, *i);
-            !(v.is_finite() && v * SCALES[2] < f64::from(f32::MAX))
-        };
-        match (0..3 * BINS).find(finite) {
-            Some(bad) => {
-                let found = format!("{} at byte {}", self.raw(0, bad), 12 + 8 * bad);
-                Err(Diagnostic::new(Kind::Range, found, "finite values that single precision holds"))
-            }
-            None => Ok(()),
-        }
+        f64::from_le_bytes(self.0[channel * BINS + bin])
     }
 
     /// Red, green and blue, 1/sr: linear between the middles of the bins, those not measured left out.

@@ -12,8 +12,9 @@ pub mod zemax;
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::bsdf::words::{Words, decode};
-use crate::files::bytes::read_capped;
+use crate::files::bsdf::words::Words;
+use crate::files::bytes::{check_length, read_capped};
+use crate::files::excerpt::quoted;
 use crate::scattering::ScatterTable;
 
 /// Larger files are refused; a MERL file has 35 MB.
@@ -38,45 +39,34 @@ impl Format {
     /// # Errors
     /// [`Kind::Unavailable`] for formats that are known and not read, [`Kind::Unknown`] for the rest.
     pub fn of(bytes: &[u8], name: &str) -> Result<Self> {
-        let head = decode(&bytes[..bytes.len().min(64 << 10)]);
-        let mut words = Words::new(&head);
-        let first = words.next();
-        let starts = |word: &str| first.is_some_and(|w| w.is(word));
-        let unavailable = |what: &str| {
+        let refuse = |kind, found: String| {
             let required = "a caustix, Zemax/Radiant, MERL or Klems XML table";
-            Err(Diagnostic::new(Kind::Unavailable, what, required).at(1, 1).in_file(name))
+            Err(Diagnostic::new(kind, found, required).at(1, 1).in_file(name))
         };
         if merl::is_merl(bytes) {
             return Ok(Self::Merl);
         }
-        if bytes.starts_with(b"tensor_file") {
-            return unavailable("an RGL tensor file");
-        }
-        if starts("OPTIS") {
-            return unavailable("a Speos file");
-        }
-        if starts("type") && words.next().is_some_and(|w| w.is("bsdf_data")) {
-            return unavailable("a FRED file");
-        }
-        if starts(text::MAGIC) {
-            return Ok(Self::Text);
-        }
-        if first.is_some_and(|w| w.text.starts_with('<')) {
-            return Ok(Self::Klems);
+        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(64 << 10)]);
+        let mut words = Words::new(&head);
+        let (first, second) = (words.next(), words.next());
+        let starts = |word: &str| first.is_some_and(|w| w.is(word));
+        let unread = [
+            (bytes.starts_with(b"tensor_file"), "an RGL tensor file"),
+            (starts("OPTIS"), "a Speos file"),
+            (starts("type") && second.is_some_and(|w| w.is("bsdf_data")), "a FRED file"),
+        ];
+        if let Some((_, what)) = unread.iter().find(|(is_this, _)| *is_this) {
+            return refuse(Kind::Unavailable, (*what).to_owned());
         }
         let keywords = ["Source", "Symmetry", "SpectralContent", "ScatterType", "SampleRotation"];
-        if keywords.iter().any(|k| starts(k)) {
-            return Ok(Self::Zemax);
-        }
         match Path::new(name).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            _ if starts(text::MAGIC) => Ok(Self::Text),
+            _ if first.is_some_and(|w| w.text.starts_with('<')) => Ok(Self::Klems),
+            _ if keywords.iter().any(|k| starts(k)) => Ok(Self::Zemax),
             Some("bsdf") => Ok(Self::Zemax),
             Some("xml") => Ok(Self::Klems),
             Some("binary") => Ok(Self::Merl),
-            _ => {
-                let found = first.map_or("a file without a word".to_owned(), |w| words::quoted(w.text));
-                let required = "a caustix, Zemax/Radiant, MERL or Klems XML table";
-                Err(Diagnostic::new(Kind::Unknown, found, required).at(1, 1).in_file(name))
-            }
+            _ => refuse(Kind::Unknown, first.map_or("a file without a word".to_owned(), |w| quoted(w.text))),
         }
     }
 
@@ -106,17 +96,14 @@ pub fn read(path: impl AsRef<Path>) -> Result<ScatterTable> {
 /// # Errors
 /// Those of `Format::of` and of the format's reader; `Kind::Limit` beyond `MAX_FILE_BYTES`.
 pub fn parse(bytes: &[u8], name: &str) -> Result<ScatterTable> {
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        let found = format!("more than {MAX_FILE_BYTES} bytes");
-        let d = Diagnostic::new(Kind::Limit, found, format!("at most {MAX_FILE_BYTES} bytes"));
-        return Err(d.in_file(name));
-    }
+    check_length(bytes, MAX_FILE_BYTES).map_err(|d| d.in_file(name))?;
     let mut table = match Format::of(bytes, name)? {
         Format::Text => text::parse(bytes, name),
         Format::Zemax => zemax::parse(bytes, name),
         Format::Merl => merl::parse(bytes, name),
         Format::Klems => klems::parse(bytes, name),
-    }?;
+    }
+    .map_err(|d| d.in_file(name))?;
     let remarks = remarks::remarks(&table);
     table.warnings.extend(remarks);
     table.warnings = table.warnings.into_iter().map(|d| d.in_file(name)).collect();

@@ -82,10 +82,9 @@ fn declared(lobe: &Lobe) -> Option<Diagnostic> {
             let albedo: f64 = weights.iter().enumerate().map(|(c, w)| w * slice_albedo(lobe, c, p, t)).sum();
             let off = (albedo - tis).abs() / tis.abs().max(albedo);
             if off > DECLARED_TOLERANCE && worst.as_ref().is_none_or(|(most, _)| off > *most) {
-                let found = format!(
-                    "a declared total {} of {tis} at theta_i {theta_i} for a table of {albedo:.6}",
-                    noun(lobe)
-                );
+                let of = noun(lobe);
+                let found =
+                    format!("a declared total {of} of {tis} at theta_i {theta_i} for a table of {albedo:.6}");
                 worst = Some((off, found));
             }
         }

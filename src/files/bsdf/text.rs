@@ -30,30 +30,21 @@
 //! | orthotropic | a full turn | 0 to 90: the surface has two planes of symmetry, through its reference direction and across it |
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::bsdf::unfold::{Turn, closed, mirrored, rises, rotational};
-use crate::files::bsdf::words::{Word, Words, decode, number, value};
+use crate::files::bsdf::unfold::{MAX_ANGLES, Turn, closed, mirrored, rises, rotational, unfold};
+use crate::files::bsdf::words::{Word, Words, number};
 use crate::scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 
 /// The first word of a file.
 pub(crate) const MAGIC: &str = "caustix-scattering";
 
-/// Angles a list may have.
-const MAX_ANGLES: usize = 100_000;
-
-/// Reads the bytes of a table; `name` stands in messages, and for a table that does not name itself.
+/// Reads the bytes of a table; `file` stands for the name of a table that does not name itself.
 ///
 /// # Errors
-/// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Unknown`], [`Kind::Range`] or [`Kind::Limit`] with file and place.
-pub fn parse(bytes: &[u8], name: &str) -> Result<ScatterTable> {
-    let text = decode(bytes);
-    read(&mut Words::new(&text), name).map_err(|d| d.in_file(name))
-}
-
-fn read(words: &mut Words, file: &str) -> Result<ScatterTable> {
-    let magic = words.expect(MAGIC)?;
-    if !magic.is(MAGIC) {
-        return Err(magic.refuse(Kind::Syntax, MAGIC));
-    }
+/// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Unknown`], [`Kind::Range`] or [`Kind::Limit`] with a place.
+pub fn parse(bytes: &[u8], file: &str) -> Result<ScatterTable> {
+    let text = String::from_utf8_lossy(bytes);
+    let words = &mut Words::new(&text);
+    words.keyword(MAGIC, MAGIC)?;
     let version = words.expect("the version of the format, 1")?;
     if version.text != "1" {
         return Err(version.refuse(Kind::Unavailable, "version 1"));
@@ -75,8 +66,7 @@ fn read(words: &mut Words, file: &str) -> Result<ScatterTable> {
         }
     }
     if lobes.is_empty() {
-        let d = Diagnostic::new(Kind::Missing, "the end of the file", "lobe and a table");
-        return Err(words.place(d));
+        return Err(words.missing("the end of the file", "lobe and a table"));
     }
     let name = name.filter(|n| !n.is_empty()).unwrap_or_else(|| file.to_owned());
     // What the parts are together can only be judged at the end.
@@ -84,49 +74,32 @@ fn read(words: &mut Words, file: &str) -> Result<ScatterTable> {
         .map_err(|d| if d.line().is_none() { words.place(d) } else { d })
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Symmetry {
-    Rotational,
-    Plane,
-    None,
-    Orthotropic,
-}
+const SYMMETRIES: [&str; 4] = ["rotational", "plane", "none", "orthotropic"];
+
+const ANGLES: [&str; 4] = ["theta_i", "phi_i", "polar", "azimuth"];
 
 /// What a lobe is made by: kept from one lobe to the next.
 #[derive(Default)]
 struct Lists {
     frame: Option<Frame>,
-    symmetry: Option<Symmetry>,
+    /// One of [`SYMMETRIES`].
+    symmetry: Option<&'static str>,
     channels: Option<usize>,
-    theta_i: Vec<f64>,
-    phi_i: Vec<f64>,
-    polar: Vec<f64>,
-    azimuth: Vec<f64>,
+    /// Those of [`ANGLES`], in degrees.
+    angles: [Vec<f64>; 4],
 }
 
 impl Lists {
     /// One key of the header and its values.
     fn entry(&mut self, key: &Word, words: &mut Words) -> Result<()> {
-        if key.is("frame") {
+        if let Some(which) = ANGLES.iter().position(|name| key.is(name)) {
+            self.angles[which] = list(words, key)?;
+        } else if key.is("frame") {
             self.frame = Some(choice(words, &[("surface", Frame::Surface), ("specular", Frame::Specular)])?);
         } else if key.is("symmetry") {
-            let all = [
-                ("rotational", Symmetry::Rotational),
-                ("plane", Symmetry::Plane),
-                ("none", Symmetry::None),
-                ("orthotropic", Symmetry::Orthotropic),
-            ];
-            self.symmetry = Some(choice(words, &all)?);
+            self.symmetry = Some(choice(words, &SYMMETRIES.map(|word| (word, word)))?);
         } else if key.is("channels") {
             self.channels = Some(choice(words, &[("1", 1), ("3", 3)])?);
-        } else if key.is("theta_i") {
-            self.theta_i = list(words, key)?;
-        } else if key.is("phi_i") {
-            self.phi_i = list(words, key)?;
-        } else if key.is("polar") {
-            self.polar = list(words, key)?;
-        } else if key.is("azimuth") {
-            self.azimuth = list(words, key)?;
         } else {
             let keys = "name, lobe, frame, symmetry, channels, theta_i, phi_i, polar, azimuth or incidence";
             return Err(key.refuse(Kind::Unknown, keys));
@@ -136,13 +109,15 @@ impl Lists {
 
     /// How the lists unfold.
     fn layout(&self, at: &Word) -> Result<Layout> {
+        const FULL_TURN: &str = "azimuths rising over at most a full turn";
         let missing = |what: &str| {
             at.place(Diagnostic::new(Kind::Missing, format!("no {what} before the values"), what))
         };
         let refuse = |found: &str, required: &str| at.place(Diagnostic::new(Kind::Range, found, required));
         let frame = self.frame.ok_or_else(|| missing("frame"))?;
         let symmetry = self.symmetry.ok_or_else(|| missing("symmetry"))?;
-        for (angles, what) in [(&self.theta_i, "theta_i"), (&self.polar, "polar")] {
+        let [theta_i, phi_i, polar, azimuth] = &self.angles;
+        for (angles, what) in [(theta_i, "theta_i"), (polar, "polar")] {
             if angles.is_empty() {
                 return Err(missing(what));
             }
@@ -150,50 +125,37 @@ impl Lists {
                 return Err(refuse(what, "strictly rising angles"));
             }
         }
-        let azimuth = match symmetry {
-            Symmetry::Rotational if self.azimuth.is_empty() => rotational(frame),
-            Symmetry::Rotational => {
+        let turn = match symmetry {
+            "rotational" if azimuth.is_empty() => rotational(frame),
+            "rotational" => {
                 return Err(refuse("azimuth with rotational symmetry", "no list of azimuths"));
             }
-            _ if self.azimuth.is_empty() => return Err(missing("azimuth")),
-            Symmetry::Plane => mirrored(&self.azimuth)
+            _ if azimuth.is_empty() => return Err(missing("azimuth")),
+            "plane" => mirrored(azimuth)
                 .ok_or_else(|| refuse("azimuth with plane symmetry", "azimuths rising from 0 to 180"))?,
-            Symmetry::None | Symmetry::Orthotropic => closed(&self.azimuth)
-                .ok_or_else(|| refuse("azimuth", "azimuths rising over at most a full turn"))?,
+            _ => closed(azimuth).ok_or_else(|| refuse("azimuth", FULL_TURN))?,
         };
-        let phi_i = match symmetry {
-            Symmetry::Orthotropic => quarters(&self.phi_i, &azimuth)
+        let incidences = match symmetry {
+            "orthotropic" => quarters(phi_i, &turn)
                 .ok_or_else(|| refuse("phi_i or azimuth with orthotropic symmetry", ORTHOTROPIC))?,
-            _ if self.phi_i.is_empty() => vec![Azimuth { phi_deg: 0.0, source: 0, mirrored: false }],
+            _ if phi_i.is_empty() => vec![Incidence { phi_deg: 0.0, source: 0, mirrored: false }],
             _ => {
-                let turn = closed(&self.phi_i)
-                    .ok_or_else(|| refuse("phi_i", "azimuths rising over at most a full turn"))?;
-                let angles = turn.azimuth_deg.iter().zip(&turn.source);
-                angles
-                    .map(|(phi_deg, &source)| Azimuth { phi_deg: *phi_deg, source, mirrored: false })
-                    .collect()
+                let turn = closed(phi_i).ok_or_else(|| refuse("phi_i", FULL_TURN))?;
+                let angles = turn.azimuth_deg.into_iter().zip(turn.source);
+                angles.map(|(phi_deg, source)| Incidence { phi_deg, source, mirrored: false }).collect()
             }
         };
         let channels = self.channels.unwrap_or(1);
-        let counts = [channels, phi_i.len(), self.theta_i.len(), self.polar.len(), azimuth.source.len()];
+        let counts = [channels, incidences.len(), theta_i.len(), polar.len(), turn.source.len()];
         Lobe::value_count(counts).map_err(|d| at.place(d))?;
-        Ok(Layout {
-            frame,
-            channels,
-            azimuth,
-            phi_i,
-            counts,
-            phis: self.phi_i.len().max(1),
-            azimuths: self.azimuth.len().max(1),
-        })
+        Ok(Layout { frame, turn, incidences, counts })
     }
 }
 
 const ORTHOTROPIC: &str = "phi_i rising from 0 to 90, and azimuths from 0 to 360 that mirror about 180";
 
 /// An azimuth of incidence, the file's one it takes, and whether its values are mirrored in azimuth.
-#[derive(Clone, Copy)]
-struct Azimuth {
+struct Incidence {
     phi_deg: f64,
     source: usize,
     mirrored: bool,
@@ -201,7 +163,7 @@ struct Azimuth {
 
 /// The full turn of a quarter: f(phi, a) = f(-phi, -a) by the plane through the reference direction, f(180 - phi, -a) by
 /// the one across. `None` where the lists do not allow it.
-fn quarters(quarter: &[f64], azimuth: &Turn) -> Option<Vec<Azimuth>> {
+fn quarters(quarter: &[f64], azimuth: &Turn) -> Option<Vec<Incidence>> {
     let n = quarter.len();
     let spans = n >= 2 && quarter[0] == 0.0 && quarter[n - 1] == 90.0 && rises(quarter);
     let a = &azimuth.azimuth_deg;
@@ -214,7 +176,7 @@ fn quarters(quarter: &[f64], azimuth: &Turn) -> Option<Vec<Azimuth>> {
     let up_again = (1..n).map(|i| (i, 180.0, 1.0));
     let down_again = (0..n - 1).rev().map(|i| (i, 360.0, -1.0));
     let all = up.chain(down).chain(up_again).chain(down_again);
-    let turn = |(source, base, sign): (usize, f64, f64)| Azimuth {
+    let turn = |(source, base, sign): (usize, f64, f64)| Incidence {
         phi_deg: base + sign * quarter[source],
         source,
         mirrored: sign < 0.0,
@@ -224,14 +186,10 @@ fn quarters(quarter: &[f64], azimuth: &Turn) -> Option<Vec<Azimuth>> {
 
 struct Layout {
     frame: Frame,
-    channels: usize,
-    azimuth: Turn,
-    phi_i: Vec<Azimuth>,
+    turn: Turn,
+    incidences: Vec<Incidence>,
     /// Of the unfolded table.
     counts: [usize; 5],
-    /// Of the file.
-    phis: usize,
-    azimuths: usize,
 }
 
 /// A lobe: quantity and side, what it changes of the header, and the values.
@@ -240,73 +198,65 @@ fn lobe(words: &mut Words, at: &Word, lists: &mut Lists) -> Result<LobeData> {
         choice(words, &[("reflection", Quantity::Reflection), ("transmission", Quantity::Transmission)])?;
     let side =
         choice(words, &[("front", LobeSide::Front), ("back", LobeSide::Back), ("both", LobeSide::Both)])?;
-    loop {
-        match words.peek() {
-            Some(key) if key.is("incidence") => break,
-            Some(key) if !key.is("lobe") && !key.is("name") => {
-                let _key = words.next();
-                lists.entry(&key, words)?;
-            }
+    while !words.peek().is_some_and(|key| key.is("incidence")) {
+        match words.next() {
+            Some(key) if !key.is("lobe") && !key.is("name") => lists.entry(&key, words)?,
             _ => {
-                return Err(at.place(Diagnostic::new(
-                    Kind::Missing,
-                    "a lobe without values",
-                    "incidence and a table",
-                )));
+                let required = "incidence and a table";
+                return Err(at.place(Diagnostic::new(Kind::Missing, "a lobe without values", required)));
             }
         }
     }
-    let layout = lists.layout(at)?;
-    let (values, declared_tis) = blocks(words, lists, &layout)?;
+    let Layout { frame, turn, incidences, counts } = lists.layout(at)?;
+    let [channels, _, thetas, _, _] = counts;
+    let [theta_i_deg, phi_i_deg, polar_deg, azimuth_deg] = &lists.angles;
+    let of_channel = azimuth_deg.len().max(1) * polar_deg.len();
+    let (values, tis) = blocks(words, &[theta_i_deg, phi_i_deg], channels * of_channel)?;
+    let phi_i = incidences.iter().map(|phi| (phi.source, phi.mirrored));
+    let values = unfold(counts, phi_i, &turn, |channel, phi, theta| {
+        &values[((phi * thetas + theta) * channels + channel) * of_channel..][..of_channel]
+    });
+    let declared = |phi: &Incidence| tis.iter().skip(phi.source * thetas).take(thetas);
     Ok(LobeData {
         quantity,
         side,
-        frame: layout.frame,
-        theta_i_deg: lists.theta_i.clone(),
-        phi_i_deg: layout.phi_i.iter().map(|p| p.phi_deg).collect(),
-        polar_deg: lists.polar.clone(),
-        azimuth_deg: layout.azimuth.azimuth_deg.clone(),
-        channels: layout.channels,
-        values: unfold(&values, &layout),
-        declared_tis: unfold_declared(&declared_tis, &layout),
+        frame,
+        declared_tis: incidences.iter().flat_map(declared).copied().collect(),
+        theta_i_deg: theta_i_deg.clone(),
+        phi_i_deg: incidences.iter().map(|phi| phi.phi_deg).collect(),
+        polar_deg: polar_deg.clone(),
+        azimuth_deg: turn.azimuth_deg,
+        channels,
+        values,
     })
 }
 
-/// The values as they stand, [phi_i][theta_i][channel][azimuth][polar], and the declared totals, none or all.
-fn blocks(words: &mut Words, lists: &Lists, layout: &Layout) -> Result<(Vec<f32>, Vec<f64>)> {
-    let of_block = layout.channels * layout.azimuths * lists.polar.len();
-    let incidences = layout.phis * lists.theta_i.len();
-    let required = incidences * of_block;
-    if required > words.room() {
-        let found = format!("a file too short for the {required} values that its lists announce");
-        return Err(words.place(Diagnostic::new(Kind::Missing, found, "all values")));
-    }
-    let (mut values, mut declared) = (Vec::with_capacity(required), Vec::new());
+/// The values as they stand, [phi_i][theta_i] and so many each, and the declared totals, none or all.
+fn blocks(
+    words: &mut Words,
+    [theta_i, phi_i]: &[&[f64]; 2],
+    of_block: usize,
+) -> Result<(Vec<f32>, Vec<f64>)> {
+    const ALL_OR_NONE: &str = "tis at every incidence of a lobe, or at none";
+    let incidences = phi_i.len().max(1) * theta_i.len();
+    let mut values = words.table_of(incidences * of_block, "its lists announce")?;
+    let mut declared = Vec::new();
     for i in 0..incidences {
-        let key = words.expect("incidence")?;
-        if !key.is("incidence") {
-            return Err(key.refuse(Kind::Syntax, format!("incidence {} of {incidences}", i + 1)));
-        }
-        expect_angle(words, "theta_i", lists.theta_i[i % lists.theta_i.len()])?;
-        if !lists.phi_i.is_empty() {
-            expect_angle(words, "phi_i", lists.phi_i[i / lists.theta_i.len()])?;
+        words.keyword("incidence", &format!("incidence {} of {incidences}", i + 1))?;
+        expect_angle(words, "theta_i", theta_i[i % theta_i.len()])?;
+        if !phi_i.is_empty() {
+            expect_angle(words, "phi_i", phi_i[i / theta_i.len()])?;
         }
         if words.peek().is_some_and(|w| w.is("tis")) {
             let key = words.expect("tis")?;
             if declared.len() != i {
-                return Err(key.refuse(Kind::Syntax, "tis at every incidence of a lobe, or at none"));
+                return Err(key.refuse(Kind::Syntax, ALL_OR_NONE));
             }
-            declared.push(number(&words.expect("a total scatter")?, "a total scatter")?);
+            declared.push(words.number("a total scatter")?);
         } else if !declared.is_empty() {
-            return Err(words.place(Diagnostic::new(
-                Kind::Missing,
-                "an incidence without tis",
-                "tis at every incidence of a lobe, or at none",
-            )));
+            return Err(words.missing("an incidence without tis", ALL_OR_NONE));
         }
-        for _ in 0..of_block {
-            values.push(value(&words.expect("a value of the table")?)?);
-        }
+        words.values(of_block, &mut values)?;
     }
     Ok((values, declared))
 }
@@ -319,33 +269,6 @@ fn expect_angle(words: &mut Words, what: &str, angle_deg: f64) -> Result<()> {
     } else {
         Err(word.refuse(Kind::Range, format!("{what} {angle_deg}")))
     }
-}
-
-fn unfold(values: &[f32], layout: &Layout) -> Vec<f32> {
-    let [channels, _, thetas, polars, azimuths] = layout.counts;
-    let mut out = Vec::with_capacity(layout.counts.iter().product());
-    for channel in 0..channels {
-        for phi in &layout.phi_i {
-            for theta in 0..thetas {
-                let block = ((phi.source * thetas + theta) * channels + channel) * layout.azimuths;
-                for polar in 0..polars {
-                    for azimuth in 0..azimuths {
-                        let azimuth = if phi.mirrored { azimuths - 1 - azimuth } else { azimuth };
-                        out.push(values[(block + layout.azimuth.source[azimuth]) * polars + polar]);
-                    }
-                }
-            }
-        }
-    }
-    out
-}
-
-fn unfold_declared(declared: &[f64], layout: &Layout) -> Vec<f64> {
-    if declared.is_empty() {
-        return Vec::new();
-    }
-    let thetas = layout.counts[2];
-    layout.phi_i.iter().flat_map(|p| &declared[p.source * thetas..(p.source + 1) * thetas]).copied().collect()
 }
 
 /// The value that the next word names.

@@ -2,6 +2,9 @@
 
 use crate::scattering::Frame;
 
+/// Angles a list of a file may have.
+pub(crate) const MAX_ANGLES: usize = 100_000;
+
 /// A full turn and, for each of its azimuths, the file's azimuth whose values it takes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Turn {
@@ -51,6 +54,31 @@ pub(crate) fn closed(azimuth_deg: &[f64]) -> Option<Turn> {
 /// Rising strictly; false also for what is not a number.
 pub(crate) fn rises(angles: &[f64]) -> bool {
     angles.windows(2).all(|w| w[0] < w[1])
+}
+
+/// The values of an unfolded table, [channel][phi_i][theta_i][polar][azimuth]. `phi_i` has the file's azimuth of incidence that
+/// each one takes, and whether its values are mirrored in azimuth; `block` gives, for a channel, an azimuth of incidence and a
+/// theta_i of the file, its values [azimuth][polar].
+pub(crate) fn unfold<'v>(
+    counts: [usize; 5],
+    phi_i: impl Iterator<Item = (usize, bool)> + Clone,
+    turn: &Turn,
+    block: impl Fn(usize, usize, usize) -> &'v [f32],
+) -> Vec<f32> {
+    let [channels, _, thetas, polars, _] = counts;
+    let mut out = Vec::with_capacity(counts.iter().product());
+    for channel in 0..channels {
+        for (phi, mirrored) in phi_i.clone() {
+            for theta in 0..thetas {
+                let block = block(channel, phi, theta);
+                for polar in 0..polars {
+                    let values = turn.source.iter().map(|azimuth| block[azimuth * polars + polar]);
+                    if mirrored { out.extend(values.rev()) } else { out.extend(values) }
+                }
+            }
+        }
+    }
+    out
 }
 
 #[cfg(test)]

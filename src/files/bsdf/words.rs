@@ -1,22 +1,26 @@
-//! Words of a text table, each with its line and column.
+//! Words of a text table, each with its place.
 //!
 //! Exported tables mix blanks, tabs and commas and end their rows as they like, so a table is read as one stream of words;
 //! only names and rows of our own format care for the end of a line. `#` begins a comment that ends with its line.
 
-use crate::error::{Diagnostic, Kind, Result};
+use std::ops::Range;
 
-/// A word and where it stands; line and column count from 1, the column in characters.
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::{line_column, quoted};
+
+/// A word, the text that it stands in, and the byte where it begins there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Word<'a> {
     pub text: &'a str,
-    pub line: usize,
-    pub column: usize,
+    pub within: &'a str,
+    pub byte: usize,
 }
 
 impl Word<'_> {
     /// This diagnostic, at this word.
     pub fn place(&self, diagnostic: Diagnostic) -> Diagnostic {
-        diagnostic.at(self.line, self.column)
+        let (line, column) = line_column(self.within, self.byte);
+        diagnostic.at(line, column)
     }
 
     /// What was found is this word.
@@ -32,82 +36,56 @@ impl Word<'_> {
 /// A text with a position in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Words<'a> {
-    rest: &'a str,
-    line: usize,
-    column: usize,
-}
-
-/// At most 40 characters of a text that a file brought in, quoted.
-pub(crate) fn quoted(text: &str) -> String {
-    const MOST: usize = 40;
-    match text.char_indices().nth(MOST) {
-        None => format!("{text:?}"),
-        Some((end, _)) => format!("{:?}...", &text[..end]),
-    }
+    text: &'a str,
+    byte: usize,
 }
 
 fn separates(c: char) -> bool {
     c.is_whitespace() || matches!(c, ',' | ';' | '\0' | '\u{1a}' | '\u{feff}')
 }
 
+fn ends_line(c: char) -> bool {
+    matches!(c, '\n' | '\r')
+}
+
 impl<'a> Words<'a> {
     pub fn new(text: &'a str) -> Self {
-        Self::from_place(text, 1, 1)
+        Self::between(text, 0..text.len())
     }
 
-    /// A part of a file that begins at this line and column.
-    pub fn from_place(text: &'a str, line: usize, column: usize) -> Self {
-        Self { rest: text, line, column }
+    /// The words of a part of a text; their places are those in the whole.
+    pub fn between(text: &'a str, bytes: Range<usize>) -> Self {
+        Self { text: &text[..bytes.end], byte: bytes.start }
     }
 
-    /// Moves behind `bytes` bytes, which end at a character.
-    fn skip(&mut self, bytes: usize) {
-        let (gone, rest) = self.rest.split_at(bytes);
-        let mut after_cr = false;
-        for c in gone.chars() {
-            match c {
-                '\n' if after_cr => {}
-                '\n' | '\r' => (self.line, self.column) = (self.line + 1, 1),
-                _ => self.column += 1,
-            }
-            after_cr = c == '\r';
+    /// Moves to the next character that `stop` names, or to the end; gives what is passed.
+    fn pass(&mut self, stop: impl Fn(char) -> bool) -> &'a str {
+        let rest = &self.text[self.byte..];
+        let passed = &rest[..rest.find(stop).unwrap_or(rest.len())];
+        self.byte += passed.len();
+        passed
+    }
+
+    /// The next word; none, if a character that `stop` names comes first.
+    fn take(&mut self, stop: impl Fn(char) -> bool) -> Option<Word<'a>> {
+        self.pass(|c| !separates(c) || stop(c));
+        while self.text[self.byte..].starts_with('#') {
+            self.pass(ends_line);
+            self.pass(|c| !separates(c) || stop(c));
         }
-        // CR LF cut in two would count as two line ends.
-        self.rest = if after_cr { rest.strip_prefix('\n').unwrap_or(rest) } else { rest };
-    }
-
-    /// Moves to the next word; with `within_line`, not beyond the end of the line.
-    fn seek(&mut self, within_line: bool) {
-        loop {
-            let stop = |c: char| !separates(c) || (within_line && matches!(c, '\n' | '\r'));
-            self.skip(self.rest.find(stop).unwrap_or(self.rest.len()));
-            if !self.rest.starts_with('#') {
-                return;
-            }
-            self.skip(self.rest.find(['\n', '\r']).unwrap_or(self.rest.len()));
-        }
-    }
-
-    fn take(&mut self) -> Option<Word<'a>> {
-        let end = self.rest.find(separates).unwrap_or(self.rest.len());
-        if end == 0 {
-            return None;
-        }
-        let word = Word { text: &self.rest[..end], line: self.line, column: self.column };
-        self.skip(end);
-        Some(word)
+        let byte = self.byte;
+        let text = self.pass(separates);
+        (!text.is_empty()).then_some(Word { text, within: self.text, byte })
     }
 
     /// The next word.
     pub fn next(&mut self) -> Option<Word<'a>> {
-        self.seek(false);
-        self.take()
+        self.take(|_| false)
     }
 
     /// The next word of this line.
     pub fn next_in_line(&mut self) -> Option<Word<'a>> {
-        self.seek(true);
-        self.take()
+        self.take(ends_line)
     }
 
     /// The next word, which stays.
@@ -118,26 +96,55 @@ impl<'a> Words<'a> {
 
     /// The rest of this line without its comment and surrounding blanks.
     pub fn rest_of_line(&mut self) -> &'a str {
-        let end = self.rest.find(['\n', '\r', '#']).unwrap_or(self.rest.len());
-        let text = self.rest[..end].trim();
-        self.skip(end);
-        text
+        self.pass(|c| c == '#' || ends_line(c)).trim()
     }
 
     /// This diagnostic, here.
     pub fn place(&self, diagnostic: Diagnostic) -> Diagnostic {
-        diagnostic.at(self.line, self.column)
+        Word { text: "", within: self.text, byte: self.byte }.place(diagnostic)
+    }
+
+    /// That something is missing here.
+    pub fn missing(&self, found: impl Into<String>, required: impl Into<String>) -> Diagnostic {
+        self.place(Diagnostic::new(Kind::Missing, found, required))
     }
 
     /// The next word, or that the file ends before `required`.
     pub fn expect(&mut self, required: &str) -> Result<Word<'a>> {
-        let missing = Diagnostic::new(Kind::Missing, "the end of the file", required);
-        self.next().ok_or_else(|| self.place(missing))
+        self.next().ok_or_else(|| self.missing("the end of the file", required))
     }
 
-    /// At most so many words can follow: what an allocation may be made for before they are read.
-    pub fn room(&self) -> usize {
-        self.rest.len() / 2 + 1
+    /// The next word must be this keyword; else it is refused, with what is `required`.
+    pub fn keyword(&mut self, keyword: &str, required: &str) -> Result<Word<'a>> {
+        let word = self.expect(keyword)?;
+        if word.is(keyword) { Ok(word) } else { Err(word.refuse(Kind::Syntax, required)) }
+    }
+
+    /// Whether so many words can follow at all, asked before memory is taken for them.
+    pub fn have_room_for(&self, words: usize) -> bool {
+        words <= (self.text.len() - self.byte) / 2 + 1
+    }
+
+    /// A table that can hold so many values; those of a file too short for them are not asked for. `what` announces them.
+    pub fn table_of(&self, values: usize, what: &str) -> Result<Vec<f32>> {
+        if self.have_room_for(values) {
+            return Ok(Vec::with_capacity(values));
+        }
+        let found = format!("a file too short for the {values} values that {what}");
+        Err(self.missing(found, "all values"))
+    }
+
+    /// The number that the next word is; `what` names it.
+    pub fn number(&mut self, what: &str) -> Result<f64> {
+        number(&self.expect(what)?, what)
+    }
+
+    /// Adds the next `count` values to a table.
+    pub fn values(&mut self, count: usize, table: &mut Vec<f32>) -> Result<()> {
+        for _ in 0..count {
+            table.push(value(&self.expect("a value of the table")?)?);
+        }
+        Ok(())
     }
 }
 
@@ -164,11 +171,6 @@ pub(crate) fn value(word: &Word) -> Result<f32> {
     }
 }
 
-/// The text of a file: UTF-8, or what stands for it (a comment in another encoding must not stop a table).
-pub(crate) fn decode(bytes: &[u8]) -> std::borrow::Cow<'_, str> {
-    String::from_utf8_lossy(bytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -178,7 +180,8 @@ mod tests {
         let mut words = Words::new("\u{feff}a  b,c # comment, no word\r\n\t1.5;;2\r#\n\n  end");
         let mut seen = Vec::new();
         while let Some(word) = words.next() {
-            seen.push((word.text, word.line, word.column));
+            let (line, column) = line_column(word.within, word.byte);
+            seen.push((word.text, line, column));
         }
         assert_eq!(
             seen,
@@ -193,7 +196,7 @@ mod tests {
 
     #[test]
     fn numbers_are_decimal_and_finite() {
-        let word = |text| Word { text, line: 3, column: 4 };
+        let word = |text| Word { text, within: "\n\n   x", byte: 5 };
         for (text, x) in [("1", 1.0), ("-2.5E-03", -2.5e-3), ("+.5", 0.5), ("3.", 3.0)] {
             assert_eq!(number(&word(text), "x").unwrap(), x);
         }

@@ -3,7 +3,8 @@
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::lm63::tokens::{Number, Tokens};
 use crate::photometry::axes::{Axis, AxisNote, check_axes};
-use crate::photometry::{PhotometricType, Revision, TiltTable, Web};
+use crate::photometry::opening::sign;
+use crate::photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Tilt, TiltTable, Web};
 
 /// Angles on one axis, and pairs of a tilt table, that are read at most. The finest real table has 721.
 const MAX_ANGLES: usize = 100_000;
@@ -17,20 +18,6 @@ const MAX_FACTOR: f64 = 1e6;
 /// Share of the maximum that passes for measurement noise: negative intensities, planes that should be equal.
 const NOISE: f64 = 1e-3;
 
-/// The numbers of a file, checked, in the file's units.
-#[derive(Debug)]
-pub(crate) struct Body<'a> {
-    pub lamps: f64,
-    pub lumens_per_lamp: Option<f64>,
-    pub multiplier: f64,
-    pub feet: bool,
-    pub opening: [Number<'a>; 3],
-    pub ballast_factor: f64,
-    pub field12: Number<'a>,
-    pub input_watts: f64,
-    pub web: Web,
-}
-
 /// The stream and what is wrong in it and tolerated.
 pub(crate) struct Reader<'a> {
     pub tokens: Tokens<'a>,
@@ -43,12 +30,17 @@ impl<'a> Reader<'a> {
     }
 
     /// Keeps a warning at this byte.
-    pub fn warn(&mut self, offset: usize, kind: Kind, found: String, required: &str, hint: &str) {
+    pub fn warn(&mut self, offset: usize, kind: Kind, found: &str, required: &str, hint: &str) {
         let mut d = Diagnostic::new(kind, found, required);
         if !hint.is_empty() {
             d = d.hint(hint);
         }
         self.warnings.push(self.tokens.place(offset, d));
+    }
+
+    /// Keeps a warning about a number that is out of its range.
+    fn doubt(&mut self, number: &Number, what: &str, required: &str, hint: &str) {
+        self.warn(number.offset, Kind::Range, &format!("{what} {}", number.text), required, hint);
     }
 
     fn refuse<T>(&self, number: &Number, kind: Kind, what: &str, required: &str) -> Result<T> {
@@ -84,10 +76,18 @@ impl<'a> Reader<'a> {
             return self.refuse(&number, Kind::Range, what, &format!("a factor between 0 and {MAX_FACTOR}"));
         }
         if number.value == 0.0 {
-            let found = format!("{what} {}", number.text);
-            self.warn(number.offset, Kind::Range, found, "a factor above 0", "the flux is 0");
+            self.doubt(&number, what, "a factor above 0", "the flux is 0");
         }
         Ok(number)
+    }
+
+    /// A number; one that does not fit gives a warning.
+    fn tolerated(&mut self, what: &str, fits: fn(f64) -> bool, required: &str, hint: &str) -> Result<f64> {
+        let number = self.tokens.number(what)?;
+        if !fits(number.value) {
+            self.doubt(&number, what, required, hint);
+        }
+        Ok(number.value)
     }
 
     /// The block of `TILT=INCLUDE`, or a tilt file: geometry, number of pairs, angles, factors.
@@ -104,16 +104,19 @@ impl<'a> Reader<'a> {
         let upright = angles.iter().zip(&factors).find(|(angle, _)| angle.value == 0.0);
         if let Some((_, factor)) = upright.filter(|(_, factor)| factor.value != 1.0) {
             let found = format!("tilt factor {} at 0 degrees", factor.text);
-            self.warn(factor.offset, Kind::Range, found, "1 at 0 degrees", "tilt factors are not applied");
+            self.warn(factor.offset, Kind::Range, &found, "1 at 0 degrees", "tilt factors are not applied");
         }
-        let values = |list: &[Number]| list.iter().map(|n| n.value).collect();
         Ok(TiltTable { geometry, angles_deg: values(&angles), factors: values(&factors) })
     }
 
-    /// Everything from the number of lamps on.
-    pub fn body(&mut self, revision: Revision) -> Result<Body<'a>> {
-        let lamps = self.lamps()?;
-        let lumens_per_lamp = self.lumens_per_lamp()?;
+    /// Everything from the number of lamps on: a luminaire without labels and tilt.
+    pub fn luminaire(&mut self, revision: Revision) -> Result<Photometry> {
+        let whole = |x: f64| x >= 1.0 && x.fract() == 0.0;
+        let required = "a whole number, 1 or more";
+        let lamps = self.tolerated("number of lamps", whole, required, "it scales nothing")?;
+        let absolute = |x: f64| x >= 0.0 || x == -1.0;
+        let required = "0 or more, or -1 (absolute)";
+        let lumens_per_lamp = self.tolerated("lumens per lamp", absolute, required, "read as -1")?;
         let multiplier = self.factor("candela multiplier")?.value;
         let n_v = self.count("number of vertical angles")?;
         let n_h = self.count("number of horizontal angles")?;
@@ -124,7 +127,7 @@ impl<'a> Reader<'a> {
                 _ => PhotometricType::A,
             };
         let feet = self.code("units", &[1, 2], "1 (feet) or 2 (metres)")? == 1;
-        let opening = [
+        let sides = [
             self.tokens.number("width of the luminous opening")?,
             self.tokens.number("length of the luminous opening")?,
             self.tokens.number("height of the luminous opening")?,
@@ -132,11 +135,10 @@ impl<'a> Reader<'a> {
         self.require_table(n_v, n_h)?;
         let ballast_factor = self.factor("ballast factor")?.value;
         let field12 = self.field12(revision)?;
-        let input_watts = self.input_watts()?;
+        let input_watts = self.tolerated("input watts", |x| x >= 0.0, "0 or more", "read as 0")?.max(0.0);
         let vertical = self.tokens.numbers(n_v, "vertical angle")?;
         let horizontal = self.tokens.numbers(n_h, "horizontal angle")?;
         self.check_angles(revision, photometric_type, &vertical, &horizontal)?;
-        let values = |list: &[Number]| list.iter().map(|n| n.value).collect();
         let web = Web {
             photometric_type,
             vertical_deg: values(&vertical),
@@ -144,35 +146,35 @@ impl<'a> Reader<'a> {
             candela: self.candela(n_v * n_h, multiplier)?,
         };
         self.check_seam(&web, &horizontal);
-        Ok(Body {
+        Ok(Photometry {
+            file: String::new(),
+            revision,
+            labels: Vec::new(),
+            tilt: Tilt::None,
             lamps,
-            lumens_per_lamp,
+            lumens_per_lamp: (lumens_per_lamp >= 0.0).then_some(lumens_per_lamp),
             multiplier,
-            feet,
-            opening,
             ballast_factor,
-            field12,
+            field12: field12.value,
+            field12_text: field12.text.to_owned(),
             input_watts,
+            opening: self.opening(sides, feet, revision),
             web,
+            flux_declared_lm: None,
+            warnings: Vec::new(),
         })
     }
 
-    fn lamps(&mut self) -> Result<f64> {
-        let number = self.tokens.number("number of lamps")?;
-        if !(number.value >= 1.0 && number.value.fract() == 0.0) {
-            let found = format!("number of lamps {}", number.text);
-            self.warn(number.offset, Kind::Range, found, "a whole number, 1 or more", "it scales nothing");
+    fn opening(&mut self, sides: [Number; 3], feet: bool, revision: Revision) -> LuminousOpening {
+        let fields = sides.map(|n| n.value);
+        let (opening, defined) = LuminousOpening::from_fields(fields, feet, revision);
+        if !defined {
+            let signs: String = fields.map(sign).iter().collect();
+            let found = format!("signs {signs} of width, length and height of the luminous opening");
+            let hint = format!("read as {}", opening.shape);
+            self.warn(sides[0].offset, Kind::Unknown, &found, "a combination of this edition", &hint);
         }
-        Ok(number.value)
-    }
-
-    fn lumens_per_lamp(&mut self) -> Result<Option<f64>> {
-        let number = self.tokens.number("lumens per lamp")?;
-        if number.value < 0.0 && number.value != -1.0 {
-            let found = format!("lumens per lamp {}", number.text);
-            self.warn(number.offset, Kind::Range, found, "0 or more, or -1 (absolute)", "read as -1");
-        }
-        Ok((number.value >= 0.0).then_some(number.value))
+        opening
     }
 
     /// Whether the file holds what its counts promise, before memory is asked for. Three numbers short is the mark
@@ -202,26 +204,17 @@ impl<'a> Reader<'a> {
             return self.factor("ballast-lamp photometric factor (field 12)");
         }
         let number = self.tokens.number("field 12")?;
-        let found = || format!("field 12 {}", number.text);
         if revision == Revision::Y2019 {
             if generation_type(number.text).is_none() {
+                let found = format!("field 12 {}", number.text);
                 let required = "a file generation type such as 1.10000";
-                self.warn(number.offset, Kind::Unknown, found(), required, "it is never used as a factor");
+                self.warn(number.offset, Kind::Unknown, &found, required, "it is never used as a factor");
             }
         } else if number.value != 1.0 {
             let hint = "it is a factor in 1986 and 1991 only, and is ignored here";
-            self.warn(number.offset, Kind::Range, found(), "1 in this edition", hint);
+            self.doubt(&number, "field 12", "1 in this edition", hint);
         }
         Ok(number)
-    }
-
-    fn input_watts(&mut self) -> Result<f64> {
-        let number = self.tokens.number("input watts")?;
-        if number.value < 0.0 {
-            let found = format!("input watts {}", number.text);
-            self.warn(number.offset, Kind::Range, found, "0 or more", "read as 0");
-        }
-        Ok(number.value.max(0.0))
     }
 
     fn check_angles(
@@ -231,7 +224,6 @@ impl<'a> Reader<'a> {
         vertical: &[Number],
         horizontal: &[Number],
     ) -> Result<()> {
-        let values = |list: &[Number]| list.iter().map(|n| n.value).collect::<Vec<f64>>();
         let offset = |note: &AxisNote| {
             let list = if note.axis == Axis::Vertical { vertical } else { horizontal };
             list.get(note.index).map_or(0, |n| n.offset)
@@ -242,12 +234,12 @@ impl<'a> Reader<'a> {
             self.tokens.place(offset(&note), d)
         })?;
         for note in notes {
-            self.warn(offset(&note), Kind::Range, note.found.clone(), note.required, note.hint);
+            self.warn(offset(&note), Kind::Range, &note.found, note.required, note.hint);
         }
         let half =
             photometric_type == PhotometricType::C && h.first() == Some(&90.0) && h.last() == Some(&270.0);
         if half && revision >= Revision::Y2002 {
-            let found = "horizontal angles over 90..270".to_owned();
+            let found = "horizontal angles over 90..270";
             let hint = "read as mirrored in the 90-270 plane, as before 2002";
             self.warn(horizontal[0].offset, Kind::Range, found, "0, 0..90, 0..180 or 0..360", hint);
         }
@@ -266,7 +258,7 @@ impl<'a> Reader<'a> {
         let step = first.iter().zip(last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         if step > NOISE * web.max_intensity().intensity_cd {
             let found = format!("planes H = 0 and H = 360 that differ by up to {step} cd");
-            self.warn(horizontal[n_h - 1].offset, Kind::Range, found, "one plane, twice", "both are kept");
+            self.warn(horizontal[n_h - 1].offset, Kind::Range, &found, "one plane, twice", "both are kept");
         }
     }
 
@@ -291,14 +283,17 @@ impl<'a> Reader<'a> {
                 let required = "0 or more (noise down to -0.1 % of the maximum is taken as 0)";
                 return self.refuse(&number, Kind::Range, "candela", required);
             }
-            let found = format!("candela {}", number.text);
-            self.warn(number.offset, Kind::Range, found, "0 or more", "negative intensities are taken as 0");
+            self.doubt(&number, "candela", "0 or more", "negative intensities are taken as 0");
             for c in &mut candela {
                 *c = c.max(0.0);
             }
         }
         Ok(candela)
     }
+}
+
+fn values(list: &[Number]) -> Vec<f64> {
+    list.iter().map(|n| n.value).collect()
 }
 
 /// Meaning of field 12 in LM-63-2019 (its section 5.13, Table 2). The code is text: trailing zeros may be missing.

@@ -1,7 +1,7 @@
 //! What stands before the numbers: version line, labels, `TILT=`.
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::lm63::tokens::{line_column, quoted};
+use crate::files::excerpt::{line_column, quoted};
 use crate::photometry::Revision;
 use nom::bytes::complete::{tag_no_case, take_until};
 use nom::character::complete::{char, multispace0, space0};
@@ -60,7 +60,7 @@ fn label_line(line: &str) -> IResult<&str, (&str, &str)> {
 }
 
 /// The revision of a version line, and whether the line is as its standard spells it; `None`: a free label.
-fn revision(line: &str) -> Option<(Revision, bool)> {
+fn revision_of(line: &str) -> Option<(Revision, bool)> {
     let line: String = line.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect();
     let year = line.strip_prefix("IESNA:LM-63-").or_else(|| line.strip_prefix("IES:LM-63-"));
     Some(match (line.as_str(), year) {
@@ -82,59 +82,43 @@ fn revision(line: &str) -> Option<(Revision, bool)> {
 /// # Errors
 /// [`Kind::Missing`] when there is no TILT line, at the first line of numbers; [`Kind::Limit`] for a flood of labels.
 pub(crate) fn read_header(text: &str) -> Result<Header<'_>> {
-    let mut header = Header {
-        revision: Revision::Y1986,
-        labels: Vec::new(),
-        tilt: ("", 0),
-        body: text.len(),
-        warnings: Vec::new(),
-    };
+    let (mut revision, mut labels, mut warnings) = (Revision::Y1986, Vec::new(), Vec::new());
     let mut first = true;
     let mut numbers_at = None;
     for (offset, line) in lines(text) {
         if let Ok((_, value)) = tilt_line(line) {
             let start = offset + line.len() - value.trim_start().len();
-            header.tilt = (value.trim(), start);
-            header.body = offset + line.len();
-            return Ok(header);
+            let (tilt, body) = ((value.trim(), start), offset + line.len());
+            return Ok(Header { revision, labels, tilt, body, warnings });
         }
         if line.trim().is_empty() {
             continue;
         }
-        if first {
-            first = false;
-            if let Some((revision, as_spelt)) = revision(line) {
-                header.revision = revision;
-                if !as_spelt {
-                    header.warnings.push(version_warning(line, revision).at(line_column(text, offset).0, 1));
-                }
-                continue;
+        if std::mem::take(&mut first)
+            && let Some((found, as_spelt)) = revision_of(line)
+        {
+            revision = found;
+            if !as_spelt {
+                warnings.push(version_warning(line, revision).at(line_column(text, offset).0, 1));
             }
+            continue;
         }
         if numbers_at.is_none()
             && line.split([' ', '\t', ',']).all(|w| w.is_empty() || w.parse::<f64>().is_ok())
         {
             numbers_at = Some(offset);
         }
-        if header.labels.len() == MAX_LABELS {
-            let d = Diagnostic::new(
-                Kind::Limit,
-                "one more label line",
-                format!("at most {MAX_LABELS} label lines"),
-            );
+        if labels.len() == MAX_LABELS {
+            let required = format!("at most {MAX_LABELS} label lines");
+            let d = Diagnostic::new(Kind::Limit, "one more label line", required);
             return Err(d.at(line_column(text, offset).0, 1));
         }
-        add_label(&mut header.labels, line);
+        add_label(&mut labels, line);
     }
     let (line, column) = line_column(text, numbers_at.unwrap_or(text.trim_end().len()));
     let found = if numbers_at.is_some() { "numbers before any TILT line" } else { "the end of the file" };
-    Err(Diagnostic::new(
-        Kind::Missing,
-        found,
-        "a line TILT=NONE, TILT=INCLUDE or TILT=file before the numbers",
-    )
-    .at(line, column)
-    .hint("is this an LM-63 file?"))
+    let required = "a line TILT=NONE, TILT=INCLUDE or TILT=file before the numbers";
+    Err(Diagnostic::new(Kind::Missing, found, required).at(line, column).hint("is this an LM-63 file?"))
 }
 
 fn version_warning(line: &str, revision: Revision) -> Diagnostic {
@@ -173,7 +157,7 @@ mod tests {
             ("ERCO Leuchten GmbH", None),
             ("REPORT NUMBER: 1", None),
         ] {
-            assert_eq!(revision(line), expected, "{line}");
+            assert_eq!(revision_of(line), expected, "{line}");
         }
     }
 

@@ -21,14 +21,13 @@ mod tokens;
 pub use body::generation_type;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::bytes::read_capped;
-use crate::photometry::opening::sign;
-use crate::photometry::{LuminousOpening, Photometry, Tilt, TiltTable, flux};
+use crate::files::bytes::{check_length, read_capped};
+use crate::files::excerpt::quoted;
+use crate::photometry::{Photometry, Tilt, TiltTable, flux};
 use body::Reader;
-use header::{Header, has_tilt_line, read_header};
+use header::{has_tilt_line, read_header};
 use std::path::Path;
 use std::rc::Rc;
-use tokens::quoted;
 
 /// Larger files are refused: the largest real one has 1.3 MB.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
@@ -63,11 +62,7 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
 
 /// The same where tilt files can be had.
 pub(crate) fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result<Photometry> {
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        let found = format!("more than {MAX_FILE_BYTES} bytes");
-        let d = Diagnostic::new(Kind::Limit, found, format!("at most {MAX_FILE_BYTES} bytes"));
-        return Err(d.in_file(name));
-    }
+    check_length(bytes, MAX_FILE_BYTES).map_err(|d| d.in_file(name))?;
     let mut photometry = parse_text(&decode::decode(bytes), tilt).map_err(|d| d.in_file(name))?;
     photometry.file = name.to_owned();
     photometry.warnings = photometry.warnings.into_iter().map(|d| d.in_file(name)).collect();
@@ -75,44 +70,18 @@ pub(crate) fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result
 }
 
 fn parse_text(text: &str, tilt_file: TiltFile<'_>) -> Result<Photometry> {
-    let mut header = read_header(text)?;
-    let mut reader = Reader::new(text, header.body);
-    reader.warnings.append(&mut header.warnings);
-    let tilt = read_tilt(&header, &mut reader, tilt_file)?;
-    let body = reader.body(header.revision)?;
-    let fields = body.opening.map(|n| n.value);
-    let (opening, defined) = LuminousOpening::from_fields(fields, body.feet, header.revision);
-    if !defined {
-        let signs: String = fields.map(sign).iter().collect();
-        let found = format!("signs {signs} of width, length and height of the luminous opening");
-        let hint = format!("read as {}", opening.shape);
-        let required = "a combination of this edition";
-        reader.warn(body.opening[0].offset, Kind::Unknown, found, required, &hint);
-    }
+    let header = read_header(text)?;
+    let mut reader = Reader { warnings: header.warnings, ..Reader::new(text, header.body) };
+    let tilt = read_tilt(header.tilt, &mut reader, tilt_file)?;
+    let luminaire = reader.luminaire(header.revision)?;
     warn_about_rest(&mut reader);
-    let mut photometry = Photometry {
-        file: String::new(),
-        revision: header.revision,
-        labels: header.labels,
-        tilt,
-        lamps: body.lamps,
-        lumens_per_lamp: body.lumens_per_lamp,
-        multiplier: body.multiplier,
-        ballast_factor: body.ballast_factor,
-        field12: body.field12.value,
-        field12_text: body.field12.text.to_owned(),
-        input_watts: body.input_watts,
-        opening,
-        web: body.web,
-        flux_declared_lm: None,
-        warnings: reader.warnings,
-    };
+    let mut photometry = Photometry { labels: header.labels, tilt, warnings: reader.warnings, ..luminaire };
     compare_declared(&mut photometry);
     Ok(photometry)
 }
 
-fn read_tilt(header: &Header, reader: &mut Reader, tilt_file: TiltFile<'_>) -> Result<Tilt> {
-    let (value, offset) = header.tilt;
+/// What TILT= says; `value` begins at byte `offset`.
+fn read_tilt((value, offset): (&str, usize), reader: &mut Reader, tilt_file: TiltFile<'_>) -> Result<Tilt> {
     let mut words = value.split_whitespace();
     let first = words.next().unwrap_or("");
     if first.is_empty() {
@@ -123,37 +92,24 @@ fn read_tilt(header: &Header, reader: &mut Reader, tilt_file: TiltFile<'_>) -> R
     if none || first.eq_ignore_ascii_case("INCLUDE") {
         if words.next().is_some() {
             let found = format!("TILT={}", quoted(value));
-            reader.warn(offset, Kind::Syntax, found, "nothing after NONE or INCLUDE", "the rest is ignored");
+            reader.warn(offset, Kind::Syntax, &found, "nothing after NONE or INCLUDE", "the rest is ignored");
         }
         return if none { Ok(Tilt::None) } else { reader.tilt_table().map(Tilt::Include) };
     }
     let name = if first.eq_ignore_ascii_case("FILE") && words.next().is_some() {
         let found = format!("TILT={}", quoted(value));
-        reader.warn(
-            offset,
-            Kind::Syntax,
-            found,
-            "TILT= and the name of the file",
-            "FILE is not part of LM-63",
-        );
+        let required = "TILT= and the name of the file";
+        reader.warn(offset, Kind::Syntax, &found, required, "FILE is not part of LM-63");
         value[first.len()..].trim()
     } else {
         value
     };
-    match read_tilt_file(name, tilt_file) {
-        Ok(table) => Ok(Tilt::File { name: name.to_owned(), table: Some(table) }),
-        Err(d) => {
-            let hint = format!("tilt factors are not applied anyway; {d}");
-            reader.warn(
-                offset,
-                d.kind(),
-                format!("tilt file {}", quoted(name)),
-                "a readable tilt file",
-                &hint,
-            );
-            Ok(Tilt::File { name: name.to_owned(), table: None })
-        }
-    }
+    let table = read_tilt_file(name, tilt_file).map_err(|d| {
+        let found = format!("tilt file {}", quoted(name));
+        let hint = format!("tilt factors are not applied anyway; {d}");
+        reader.warn(offset, d.kind(), &found, "a readable tilt file", &hint);
+    });
+    Ok(Tilt::File { name: name.to_owned(), table: table.ok() })
 }
 
 /// A tilt file beside the photometric file; folders in its name belong to another machine and are dropped.
@@ -173,7 +129,7 @@ fn warn_about_rest(reader: &mut Reader) {
     let required = "nothing after the last candela value";
     if has_tilt_line(rest) || has_tilt_line(behind_mark) {
         let hint = "the first luminaire is read";
-        reader.warn(offset, Kind::Syntax, "another luminaire".to_owned(), "one luminaire", hint);
+        reader.warn(offset, Kind::Syntax, "another luminaire", "one luminaire", hint);
     } else if !blank(rest) {
         let surplus = reader.tokens.count();
         let word = reader.tokens.peek().map_or(String::new(), |(word, _)| quoted(word));
@@ -182,10 +138,9 @@ fn warn_about_rest(reader: &mut Reader) {
             1 => "1 surplus number".to_owned(),
             n => format!("{n} surplus numbers"),
         };
-        reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
+        reader.warn(offset, Kind::Syntax, &found, required, "it is ignored");
     } else if !blank(behind_mark) {
-        let found = "text behind the end-of-file mark".to_owned();
-        reader.warn(offset, Kind::Syntax, found, required, "it is ignored");
+        reader.warn(offset, Kind::Syntax, "text behind the end-of-file mark", required, "it is ignored");
     }
 }
 

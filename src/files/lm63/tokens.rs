@@ -4,8 +4,8 @@
 //! tabs and commas all separate. A token is a decimal number or it is refused, with its place.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::{line_column, quoted};
 use nom::branch::alt;
-use nom::bytes::complete::{take_till, take_while};
 use nom::character::complete::{char, digit0, digit1, one_of};
 use nom::combinator::{all_consuming, opt, recognize};
 use nom::{IResult, Parser};
@@ -30,48 +30,12 @@ fn is_separator(c: char) -> bool {
     c.is_whitespace() || c == ',' || c == '\0'
 }
 
-fn separators(input: &str) -> IResult<&str, &str> {
-    take_while(is_separator).parse(input)
-}
-
-fn word(input: &str) -> IResult<&str, &str> {
-    take_till(is_separator).parse(input)
-}
-
 /// `-12`, `.5`, `3.`, `1.4E+0010`; neither `nan`, `inf` nor a Fortran `D` exponent.
 fn decimal(input: &str) -> IResult<&str, &str> {
     let whole = recognize((digit1, opt((char('.'), digit0))));
     let fraction = recognize((char('.'), digit1));
     let exponent = (one_of("eE"), opt(one_of("+-")), digit1);
     recognize((opt(one_of("+-")), alt((whole, fraction)), opt(exponent))).parse(input)
-}
-
-/// At most 40 characters of a text that a file brought in, quoted.
-pub(crate) fn quoted(text: &str) -> String {
-    const MOST: usize = 40;
-    if text.chars().count() <= MOST {
-        format!("{text:?}")
-    } else {
-        format!("{:?}...", text.chars().take(MOST).collect::<String>())
-    }
-}
-
-/// Line and column, both from 1, of a byte in the text; the column counts characters. CR LF, LF and CR end lines.
-pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
-    let (mut line, mut column) = (1, 1);
-    let mut after_cr = false;
-    for (i, c) in text.char_indices() {
-        if i >= offset {
-            break;
-        }
-        match c {
-            '\n' if after_cr => {}
-            '\n' | '\r' => (line, column) = (line + 1, 1),
-            _ => column += 1,
-        }
-        after_cr = c == '\r';
-    }
-    (line, column)
 }
 
 impl<'a> Tokens<'a> {
@@ -87,54 +51,42 @@ impl<'a> Tokens<'a> {
         diagnostic.at(line, column)
     }
 
-    fn skip_separators(&mut self) {
-        if let Ok((_, blank)) = separators(&self.text[self.offset..self.end]) {
-            self.offset += blank.len();
-        }
-    }
-
     /// The next word, if there is one, and its place; the position does not move past it.
     pub fn peek(&mut self) -> Option<(&'a str, usize)> {
-        self.skip_separators();
-        match word(&self.text[self.offset..self.end]) {
-            Ok((_, found)) if !found.is_empty() => Some((found, self.offset)),
-            _ => None,
-        }
+        let rest = self.text[self.offset..self.end].trim_start_matches(is_separator);
+        self.offset = self.end - rest.len();
+        let word = rest.split(is_separator).next()?;
+        (!word.is_empty()).then_some((word, self.offset))
     }
 
     /// The next token, which must be a finite number; `what` names it in the message.
     pub fn number(&mut self, what: &str) -> Result<Number<'a>> {
         let required = || format!("a number: {what}");
         let Some((found, offset)) = self.peek() else {
-            return Err(self.end_of_numbers(Diagnostic::new(
-                Kind::Missing,
-                "the end of the file",
-                required(),
-            )));
+            let missing = Diagnostic::new(Kind::Missing, "the end of the file", required());
+            return Err(self.end_of_numbers(missing));
         };
-        let refuse = |hint: Option<&str>, kind: Kind| {
-            let d = self.place(offset, Diagnostic::new(kind, quoted(found), required()));
-            hint.map_or(d.clone(), |hint| d.hint(hint))
-        };
-        if all_consuming(decimal).parse(found).is_err() {
-            return Err(refuse(hint_for(found), Kind::Syntax));
-        }
+        let is_decimal = all_consuming(decimal).parse(found).is_ok();
         match found.parse::<f64>() {
-            Ok(value) if value.is_finite() => {
+            Ok(value) if is_decimal && value.is_finite() => {
                 self.offset += found.len();
                 Ok(Number { value, text: found, offset })
             }
-            _ => Err(refuse(Some("the value is beyond the range of a double"), Kind::Range)),
+            _ => {
+                let kind = if is_decimal { Kind::Range } else { Kind::Syntax };
+                let hint = if is_decimal { Some(TOO_LARGE) } else { hint_for(found) };
+                let refused = self.place(offset, Diagnostic::new(kind, quoted(found), required()));
+                Err(match hint {
+                    Some(hint) => refused.hint(hint),
+                    None => refused,
+                })
+            }
         }
     }
 
     /// The next `n` tokens as numbers. The caller has checked that there are as many ([`Self::require`]).
     pub fn numbers(&mut self, n: usize, what: &str) -> Result<Vec<Number<'a>>> {
-        let mut list = Vec::with_capacity(n);
-        for _ in 0..n {
-            list.push(self.number(what)?);
-        }
-        Ok(list)
+        (0..n).map(|_| self.number(what)).collect()
     }
 
     /// Checks, before anything is allocated, that `n` more numbers follow. A word in their midst is refused at its
@@ -144,9 +96,8 @@ impl<'a> Tokens<'a> {
         for have in 0..n {
             if ahead.peek().is_none() {
                 let found = format!("the end of the file after {have} of {n} numbers");
-                let d =
-                    Diagnostic::new(Kind::Missing, found, format!("{n} numbers; the next is {}", name(have)));
-                return Err(self.end_of_numbers(d));
+                let required = format!("{n} numbers; the next is {}", name(have));
+                return Err(self.end_of_numbers(Diagnostic::new(Kind::Missing, found, required)));
             }
             if let Err(refused) = ahead.number("") {
                 // Read once more, for the message: names are made for the one number that needs it.
@@ -160,11 +111,7 @@ impl<'a> Tokens<'a> {
     /// How many numbers follow, up to the first thing that is none.
     pub fn count(&self) -> u64 {
         let mut ahead = *self;
-        let mut have = 0;
-        while ahead.number("").is_ok() {
-            have += 1;
-        }
-        have
+        std::iter::from_fn(|| ahead.number("").ok()).count() as u64
     }
 
     fn end_of_numbers(&self, diagnostic: Diagnostic) -> Diagnostic {
@@ -173,11 +120,13 @@ impl<'a> Tokens<'a> {
 
     /// The text not read yet, with its offset, and what stands behind an end-of-file mark.
     pub fn rest(&mut self) -> (usize, &'a str, &'a str) {
-        self.skip_separators();
+        self.peek();
         let behind = self.text.get(self.end + 1..).unwrap_or("");
         (self.offset, &self.text[self.offset..self.end], behind)
     }
 }
+
+const TOO_LARGE: &str = "the value is beyond the range of a double";
 
 fn hint_for(found: &str) -> Option<&'static str> {
     let lower = found.to_ascii_lowercase();

@@ -30,45 +30,34 @@ const OF_THE_MAP: [&str; 4] = ["radius", "nearest", "progressive_radius", "kerne
 pub(super) fn read(mut table: Table<'_, '_>) -> Option<Camera> {
     let view = read_view(&mut table);
     let fov_deg = table.needed_number("fov_deg", &FOV);
-    let pixels = table.cells("pixels", MOST_PIXELS, PIXELS_REQUIRED);
-    let pixels = table.require("pixels", pixels, PIXELS_REQUIRED);
-    let samples = read_samples(&mut table);
-    let lens_radius_m = table.number("lens_radius", &LENS);
-    let focus_m = table.number("focus", &LENGTH);
-    let filter = table.word("filter", &FILTERS);
-    let method = table.word("method", &METHODS);
-    let bandwidth = read_bandwidth(&mut table);
-    let kernel = table.word("kernel", &KERNELS);
-    let background = table.number_or_vector("background", &LUMINANCE);
-    let exposure = if table.is_text("exposure") {
+    let pixels = table.needed("pixels", PIXELS_REQUIRED, |t, key| t.cells(key, MOST_PIXELS, PIXELS_REQUIRED));
+    let needed = view.zip(fov_deg).zip(pixels);
+    // Where one of them is missing, the rest is read all the same, so that all its errors are told.
+    let ((view, fov_deg), pixels) = needed.unwrap_or_default();
+    let mut spec = CameraSpec::pinhole(view.0, view.1, view.2, fov_deg, pixels);
+    spec.samples = read_samples(&mut table).unwrap_or(spec.samples);
+    spec.lens_radius_m = table.number("lens_radius", &LENS).unwrap_or(spec.lens_radius_m);
+    spec.focus_m = table.number("focus", &LENGTH).unwrap_or(spec.focus_m);
+    spec.filter = table.word("filter", &FILTERS).unwrap_or_default();
+    spec.method = table.word("method", &METHODS).unwrap_or_default();
+    spec.bandwidth = read_bandwidth(&mut table);
+    spec.kernel = table.word("kernel", &KERNELS).unwrap_or_default();
+    spec.background_cd_m2 = table.number_or_vector("background", &LUMINANCE).unwrap_or_default().to_array();
+    let exposure = if table.word_of("exposure").is_some() {
         table.word("exposure", &EXPOSURES)
     } else {
         table.number("exposure", &WHITE).map(Exposure::White)
     };
-    let filmic = table.truth("filmic");
-    let false_colour = table.truth("false_colour");
-    let memory_mb = table.number("photon_memory_mb", &MEMORY_MB);
-    if method == Some(Method::Splat) {
+    spec.exposure = exposure.unwrap_or_default();
+    spec.filmic = table.truth("filmic").unwrap_or(false);
+    spec.false_colour = table.truth("false_colour").unwrap_or(false);
+    if let Some(mb) = table.number("photon_memory_mb", &MEMORY_MB) {
+        spec.photon_memory_bytes = (mb * 1e6) as u64;
+    }
+    if spec.method == Method::Splat {
         warn_of_the_map(&table);
     }
-    let camera = view.zip(fov_deg).zip(pixels).and_then(|(((position, look_at, up), fov_deg), pixels)| {
-        let default = CameraSpec::pinhole(position, look_at, up, fov_deg, pixels);
-        table.accept(Camera::new(CameraSpec {
-            samples: samples.unwrap_or(default.samples),
-            lens_radius_m: lens_radius_m.unwrap_or(default.lens_radius_m),
-            focus_m: focus_m.unwrap_or(default.focus_m),
-            filter: filter.unwrap_or_default(),
-            method: method.unwrap_or_default(),
-            bandwidth,
-            kernel: kernel.unwrap_or_default(),
-            background_cd_m2: background.map_or([0.0; 3], |b| b.to_array()),
-            exposure: exposure.unwrap_or_default(),
-            filmic: filmic.unwrap_or(false),
-            false_colour: false_colour.unwrap_or(false),
-            photon_memory_bytes: memory_mb.map_or(default.photon_memory_bytes, |mb| (mb * 1e6) as u64),
-            ..default
-        }))
-    });
+    let camera = needed.and_then(|_| table.accept(Camera::new(spec)));
     table.finish();
     camera
 }
@@ -115,11 +104,8 @@ fn read_bandwidth(table: &mut Table<'_, '_>) -> Bandwidth {
     given.retain(|(place, _)| place.is_some());
     given.sort_unstable();
     if let [_, (_, second), ..] = given[..] {
-        table.error(
-            second,
-            Kind::Range,
-            "one of radius, nearest and progressive_radius, or none of them, not several",
-        );
+        let required = "one of radius, nearest and progressive_radius, or none of them, not several";
+        table.error(second, Kind::Range, required);
     }
     radius
         .map(Bandwidth::Radius)

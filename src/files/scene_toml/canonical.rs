@@ -1,71 +1,55 @@
 //! A scene's text without what light does not depend on: comments, layout, the order of keys, ways of writing a number, the
 //! camera. Two texts that differ in these alone have the same form, so photons that were kept serve both.
 
-use std::fmt::Write;
+use std::collections::BTreeMap;
 
 use toml::de::{DeTable, DeValue};
 
+/// Gives the hash of the content of the file of this name.
+type HashOf<'h> = &'h dyn Fn(&str) -> Option<String>;
+
 /// The values of a TOML text but for `[camera]`, keys sorted. A file, named by `file` or `image`, stands for its content, of which
 /// `hash_of` gives the hash. A text that is no TOML stays as it is.
-pub(crate) fn canonical(text: &str, hash_of: &dyn Fn(&str) -> Option<String>) -> String {
+pub(crate) fn canonical(text: &str, hash_of: HashOf<'_>) -> String {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let Ok(root) = DeTable::parse(body) else { return text.to_string() };
-    let mut out = String::new();
-    write_table(&mut out, root.get_ref(), "camera", hash_of);
-    out
-}
-
-fn write_table(
-    out: &mut String,
-    table: &DeTable<'_>,
-    without: &str,
-    hash_of: &dyn Fn(&str) -> Option<String>,
-) {
-    let mut entries: Vec<_> =
-        table.iter().map(|(key, value)| (key.get_ref().as_ref(), value.get_ref())).collect();
-    entries.retain(|(key, _)| *key != without);
-    entries.sort_by_key(|(key, _)| *key);
-    out.push('{');
-    for (key, value) in entries {
-        put(out, format_args!("{key:?}="));
-        match (key, value.as_str().filter(|_| ["file", "image"].contains(&key)).and_then(hash_of)) {
-            (_, Some(hash)) => put(out, format_args!("{hash}")),
-            _ => write_value(out, value, hash_of),
-        }
-        out.push(';');
+    match DeTable::parse(body) {
+        Ok(root) => of_table(root.get_ref(), "camera", hash_of),
+        Err(_) => text.to_string(),
     }
-    out.push('}');
 }
 
-fn write_value(out: &mut String, value: &DeValue<'_>, hash_of: &dyn Fn(&str) -> Option<String>) {
+fn of_table(table: &DeTable<'_>, without: &str, hash_of: HashOf<'_>) -> String {
+    let mut entries: BTreeMap<_, _> =
+        table.iter().map(|(key, value)| (key.get_ref().as_ref(), value.get_ref())).collect();
+    entries.remove(without);
+    let form = |(key, value): (&str, &DeValue<'_>)| {
+        let file = value.as_str().filter(|_| ["file", "image"].contains(&key));
+        let form = file.and_then(hash_of).unwrap_or_else(|| of_value(value, hash_of));
+        format!("{key:?}={form};")
+    };
+    format!("{{{}}}", entries.into_iter().map(form).collect::<String>())
+}
+
+fn of_value(value: &DeValue<'_>, hash_of: HashOf<'_>) -> String {
     match value {
-        DeValue::String(text) => put(out, format_args!("{text:?}")),
-        DeValue::Boolean(truth) => put(out, format_args!("{truth}")),
-        DeValue::Datetime(time) => put(out, format_args!("{time}")),
+        DeValue::String(text) => format!("{text:?}"),
+        DeValue::Boolean(truth) => truth.to_string(),
+        DeValue::Datetime(time) => time.to_string(),
         DeValue::Integer(integer) => match i128::from_str_radix(integer.as_str(), integer.radix()) {
-            Ok(number) => put(out, format_args!("{number}")),
-            Err(_) => out.push_str(integer.as_str()),
+            Ok(number) => number.to_string(),
+            Err(_) => integer.as_str().to_string(),
         },
         DeValue::Float(float) => match float.as_str().parse::<f64>() {
             // Whole numbers look like integers, others as the shortest decimal that is read as the same bits.
-            Ok(number) => put(out, format_args!("{number}")),
-            Err(_) => out.push_str(float.as_str()),
+            Ok(number) => number.to_string(),
+            Err(_) => float.as_str().to_string(),
         },
         DeValue::Array(items) => {
-            out.push('[');
-            for item in items.iter() {
-                write_value(out, item.get_ref(), hash_of);
-                out.push(',');
-            }
-            out.push(']');
+            let items: String = items.iter().map(|item| of_value(item.get_ref(), hash_of) + ",").collect();
+            format!("[{items}]")
         }
-        DeValue::Table(table) => write_table(out, table, "", hash_of),
+        DeValue::Table(table) => of_table(table, "", hash_of),
     }
-}
-
-fn put(out: &mut String, what: std::fmt::Arguments<'_>) {
-    // A String takes all that is written to it.
-    out.write_fmt(what).ok();
 }
 
 #[cfg(test)]

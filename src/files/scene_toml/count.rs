@@ -20,90 +20,80 @@ pub const COUNT_REQUIRED: &str = "a whole number from 1 to 2^48, written like 4_
 /// [`Kind::Syntax`] for text of no such form, [`Kind::Range`] for 0, a fraction or a negative number,
 /// [`Kind::Limit`] above the cap. The diagnostic has no place.
 pub fn parse_count(text: &str) -> Result<u64> {
-    let error = |kind, why: &str| {
+    value(text.trim()).map_err(|(kind, why)| {
         let shown: String = text.chars().take(40).collect();
-        Err(Diagnostic::new(kind, format!("`{shown}`{why}"), COUNT_REQUIRED))
-    };
-    let trimmed = text.trim();
-    let Some(plain) = without_separators(trimmed) else {
-        return error(Kind::Syntax, ", where _ does not stand between two digits");
-    };
+        Diagnostic::new(kind, format!("`{shown}`{why}"), COUNT_REQUIRED)
+    })
+}
+
+/// Why a text is no count: the class of the error, and what is said behind the text.
+type Fault = (Kind, &'static str);
+
+const NO_NUMBER: Fault = (Kind::Syntax, "");
+const BELOW_ONE: Fault = (Kind::Range, "");
+const FRACTION: Fault = (Kind::Range, ", which is not whole");
+const HUGE: Fault = (Kind::Limit, ", which is more than 2^48");
+const MISPLACED: Fault = (Kind::Syntax, ", where _ does not stand between two digits");
+
+fn value(text: &str) -> Result<u64, Fault> {
+    let pieces: Vec<&str> = text.split('_').collect();
+    let digit = |c: char| c.is_ascii_digit();
+    if pieces.windows(2).any(|w| !w[0].ends_with(digit) || !w[1].starts_with(digit)) {
+        return Err(MISPLACED);
+    }
+    let plain = pieces.concat();
     if let Some(positive) = plain.strip_prefix('-') {
-        let kind = if is_decimal(positive) { Kind::Range } else { Kind::Syntax };
-        return error(kind, "");
+        return Err(if decimal(positive) == Err(NO_NUMBER) { NO_NUMBER } else { BELOW_ONE });
     }
     let value = match plain.split_once('^') {
-        Some((base, exponent)) => power(base, exponent),
-        None => decimal(plain.strip_prefix('+').unwrap_or(&plain)),
+        Some((base, exponent)) => power(base, exponent)?,
+        None => decimal(plain.strip_prefix('+').unwrap_or(&plain))?,
     };
     match value {
-        Value::NotANumber => error(Kind::Syntax, ""),
-        Value::Fraction => error(Kind::Range, ", which is not whole"),
-        Value::Whole(0) => error(Kind::Range, ""),
-        Value::Whole(n) if n <= LARGEST_COUNT => Ok(n),
-        Value::Whole(_) | Value::Huge => error(Kind::Limit, ", which is more than 2^48"),
+        0 => Err(BELOW_ONE),
+        1..=LARGEST_COUNT => Ok(value),
+        _ => Err(HUGE),
     }
-}
-
-enum Value {
-    NotANumber,
-    Fraction,
-    Whole(u64),
-    Huge,
-}
-
-/// The text without `_`; `None` if one stands elsewhere than between two digits.
-fn without_separators(text: &str) -> Option<String> {
-    let bytes = text.as_bytes();
-    let digit = |i: Option<usize>| i.and_then(|i| bytes.get(i)).is_some_and(u8::is_ascii_digit);
-    let misplaced = |i: usize| bytes[i] == b'_' && !(digit(i.checked_sub(1)) && digit(i.checked_add(1)));
-    if (0..bytes.len()).any(misplaced) { None } else { Some(text.replace('_', "")) }
 }
 
 fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit())
 }
 
-fn is_decimal(text: &str) -> bool {
-    !matches!(decimal(text), Value::NotANumber)
-}
-
-fn power(base: &str, exponent: &str) -> Value {
+fn power(base: &str, exponent: &str) -> Result<u64, Fault> {
     if !is_digits(base) || !is_digits(exponent) {
-        return Value::NotANumber;
+        return Err(NO_NUMBER);
     }
-    let Ok(base) = base.parse::<u64>() else { return Value::Huge };
+    let base = base.parse::<u64>().map_err(|_| HUGE)?;
     if base <= 1 {
         let is_one = base == 1 || exponent.bytes().all(|b| b == b'0');
-        return Value::Whole(u64::from(is_one));
+        return Ok(u64::from(is_one));
     }
-    let power = exponent.parse::<u32>().ok().and_then(|e| base.checked_pow(e));
-    power.map_or(Value::Huge, Value::Whole)
+    exponent.parse::<u32>().ok().and_then(|e| base.checked_pow(e)).ok_or(HUGE)
 }
 
 /// Digits, an optional fraction and an optional exponent; in integers, so that 1e15 + 1 stays itself.
-fn decimal(text: &str) -> Value {
+fn decimal(text: &str) -> Result<u64, Fault> {
     let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
     let digits = format!("{whole}{fraction}");
     let unsigned = exponent.strip_prefix(['+', '-']).unwrap_or(exponent);
     if !is_digits(&digits) || !is_digits(unsigned) {
-        return Value::NotANumber;
+        return Err(NO_NUMBER);
     }
     let significant = digits.trim_start_matches('0').trim_end_matches('0');
     if significant.is_empty() {
-        return Value::Whole(0);
+        return Ok(0);
     }
     let trailing = digits.len() - digits.trim_end_matches('0').len();
     let magnitude = unsigned.parse::<i64>().unwrap_or(i64::MAX / 4).min(i64::MAX / 4);
     let exponent = if exponent.starts_with('-') { -magnitude } else { magnitude };
     let zeros = exponent + trailing as i64 - fraction.len() as i64;
     if zeros < 0 {
-        return Value::Fraction;
+        return Err(FRACTION);
     }
     let scale = u32::try_from(zeros).ok().and_then(|z| 10u64.checked_pow(z));
-    let value = significant.parse::<u64>().ok().zip(scale).and_then(|(s, f)| s.checked_mul(f));
-    value.map_or(Value::Huge, Value::Whole)
+    significant.parse::<u64>().ok().zip(scale).and_then(|(s, f)| s.checked_mul(f)).ok_or(HUGE)
 }
 
 #[cfg(test)]

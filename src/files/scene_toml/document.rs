@@ -67,30 +67,19 @@ impl<'t> Document<'t> {
         self.files.borrow().clone()
     }
 
-    /// Keep an error.
-    pub fn error(&self, error: Diagnostic) {
+    /// Keep an error. One that is only counted is not even made.
+    pub fn error(&self, make: impl FnOnce() -> Diagnostic) {
         let mut errors = self.errors.borrow_mut();
         if errors.len() < MOST_ERRORS {
-            errors.push(error.in_file(self.name));
+            errors.push(make().in_file(self.name));
         } else {
-            drop(errors);
-            self.count_error();
+            self.unkept.set(self.unkept.get() + 1);
         }
-    }
-
-    /// Count an error that is not kept.
-    pub fn count_error(&self) {
-        self.unkept.set(self.unkept.get() + 1);
-    }
-
-    /// Whether further errors are only counted.
-    pub fn is_full(&self) -> bool {
-        self.errors.borrow().len() >= MOST_ERRORS
     }
 
     /// Keep an error about this place.
     pub fn error_at(&self, place: Place, kind: Kind, found: impl Into<String>, required: impl Into<String>) {
-        self.error(Diagnostic::new(kind, found, required).at(place.line, place.column));
+        self.error(|| Diagnostic::new(kind, found, required).at(place.line, place.column));
     }
 
     /// Keep a warning about this place.

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::loader::Make;
+use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::DIRECTION;
 use super::part::EmitterPart;
-use super::table::Table;
+use super::table::{Placed, Table};
 use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emitter, FLUX, Isotropic, Panel, Photometric,
@@ -24,16 +24,13 @@ const TYPES: [(&str, &str); 5] = [
 ];
 
 pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterPart> {
-    let place = table.place();
-    let given = table.text("name");
-    let name_place = given.as_ref().map_or(place, |n| n.place);
-    let name = given.map_or_else(|| format!("emitter {}", index + 1), |n| n.value);
-    names.insert(table.document(), &name, name_place, index);
-
-    let kind = table.word("type", &TYPES.map(|(word, _)| (word, word)));
+    let unnamed = Placed { value: format!("emitter {}", index + 1), place: table.place() };
+    let name = table.text("name").unwrap_or(unnamed);
+    names.insert(table.document(), &name, &name.value, index);
     let words = "\"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"";
-    let kind = table.require("type", kind, words)?;
-    table.call(TYPES.iter().find(|(word, _)| *word == kind)?.1);
+    let (kind, what) =
+        table.needed("type", words, |t, key| t.word(key, &TYPES.map(|meaning| (meaning.0, meaning))))?;
+    table.call(what);
     let position = table.needed_vector("position", &COORDINATE, "[x, y, z] in metres");
     let flux_lm = table.number("flux_lm", &FLUX);
     let colour = read_colour(&mut table);
@@ -41,7 +38,7 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
     let make = if kind == "photometric" {
         read_photometric(&mut table, position, flux_lm)
     } else {
-        let flux_lm = table.require("flux_lm", flux_lm, FLUX.words);
+        let flux_lm = table.needed("flux_lm", FLUX.words, |_, _| flux_lm);
         let light = position.zip(flux_lm);
         let emitter = match kind {
             "isotropic" => {
@@ -51,10 +48,10 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
             "panel" => read_panel(&mut table, light),
             _ => read_disc(&mut table, light),
         };
-        emitter.map(|emitter| -> Make<Emitter> { Box::new(move |_| Ok(emitter)) })
+        emitter.map(made)
     };
     table.finish();
-    Some(EmitterPart { name, colour: colour?, make: make?, medium_name, medium: None, place })
+    Some(EmitterPart { name: name.value, colour: colour?, make: make?, medium_name, medium: None })
 }
 
 fn read_photometric(
@@ -97,16 +94,14 @@ fn read_beam(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
 }
 
 fn read_panel(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
-    let size = table.numbers::<2>("size", &LENGTH);
-    let size = table.require("size", size, "[width, height] in metres");
+    let size = table.needed("size", "[width, height] in metres", |t, key| t.numbers(key, &LENGTH));
     let frame = read_frame(table)?;
     let ((centre, flux_lm), panel) = (light?, table.accept(Panel::new(size?))?);
     table.accept(AreaLight::new(centre, frame, panel, flux_lm)).map(Emitter::Panel)
 }
 
 fn read_disc(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
-    let radius = table.number("radius", &LENGTH);
-    let radius = table.require("radius", radius, "... in metres");
+    let radius = table.needed("radius", "... in metres", |t, key| t.number(key, &LENGTH));
     let frame = read_frame(table)?;
     let ((centre, flux_lm), disc) = (light?, table.accept(Disc::new(radius?))?);
     table.accept(AreaLight::new(centre, frame, disc, flux_lm)).map(Emitter::Disc)

@@ -24,10 +24,9 @@ const RELIEFS: [&str; 3] = ["waves", "noise", "image"];
 pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Option<Make<Shape>> {
     table.call("a heightfield");
     let origin = table.needed_vector("origin", &COORDINATE, "[x, y, z] of its corner in metres");
-    let size = table.numbers::<2>("size", &LENGTH);
-    let size = table.require("size", size, "[extent along x, extent along y] in metres");
-    let facing = table.word("facing", &FACING);
-    let facing = table.require("facing", facing, "\"up\" or \"down\"");
+    let extents = "[extent along x, extent along y] in metres";
+    let size = table.needed("size", extents, |t, key| t.numbers(key, &LENGTH));
+    let facing = table.needed("facing", "\"up\" or \"down\"", |t, key| t.word(key, &FACING));
     let smooth = table.truth("smooth").unwrap_or(true);
     let cells = table.cells("cells", MOST_CELLS, CELLS_REQUIRED);
     let formula = read_waves(table).map(Formula::Waves);
@@ -60,7 +59,7 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
             }))
         }
         [one] => {
-            let cells = table.require("cells", cells, CELLS_REQUIRED)?;
+            let cells = table.needed("cells", CELLS_REQUIRED, |_, _| cells)?;
             let formula = if one == "waves" { formula } else { noise };
             let field = table.accept(Heightfield::new(origin, size, cells, formula?))?;
             let field = field.facing(facing).smooth(smooth);
@@ -107,10 +106,10 @@ fn read_noise(table: &mut Table<'_, '_>) -> Option<Noise> {
     let seed = noise.integer("seed", 0, u64::MAX, "a whole number from 0 to 2^64 - 1");
     let amplitude = noise.needed_number("amplitude", &PEAK);
     let required = format!("a list of 1 to {MOST_OCTAVES} octaves {{ amplitude, wavelength }}");
-    let octaves = noise.tables("octaves", "an octave", MOST_OCTAVES, &required);
-    let octaves = noise.require("octaves", octaves, &required);
-    let octaves: Option<Vec<_>> = octaves.map(|tables| tables.into_iter().map(read_octave).collect());
-    let octaves: Option<Vec<Octave>> = octaves.and_then(|all| all.into_iter().collect());
+    let octaves =
+        noise.needed("octaves", &required, |t, key| t.tables(key, "an octave", MOST_OCTAVES, &required));
+    let octaves = octaves.map(|tables| tables.into_iter().map(read_octave).collect::<Vec<_>>());
+    let octaves = octaves.and_then(|all| all.into_iter().collect());
     let made = amplitude
         .zip(octaves)
         .and_then(|(amplitude, octaves)| noise.accept(Noise::new(seed.unwrap_or(0), octaves, amplitude)));
@@ -137,6 +136,6 @@ fn read_image(table: &mut Table<'_, '_>) -> Option<(Placed<String>, [f64; 2])> {
         return image.and(None);
     }
     let file = table.path("image");
-    let height = table.require("height", height, "[height of black, height of white] in metres");
+    let height = table.needed("height", "[height of black, height of white] in metres", |_, _| height);
     Some((file?, height?))
 }

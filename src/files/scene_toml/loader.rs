@@ -12,6 +12,11 @@ use crate::photometry::Photometry;
 /// Makes a part of a scene; whatever it says of itself has been checked when its table was read.
 pub(crate) type Make<T> = Box<dyn FnOnce(&mut Loader) -> Result<T>>;
 
+/// Makes what needs no file.
+pub(crate) fn made<T: 'static>(part: T) -> Make<T> {
+    Box::new(move |_| Ok(part))
+}
+
 /// The files of a scene, and what is odd about them.
 #[derive(Debug)]
 pub(crate) struct Loader {

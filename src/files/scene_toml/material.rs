@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::loader::Make;
+use super::loader::{Make, made};
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::MaterialPart;
+use super::suggest;
 use super::table::Table;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;
@@ -25,13 +26,13 @@ const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back
 const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
 
 pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
-    let place = table.place();
-    if table.is_unavailable("type", &["conductor"], &TYPES) {
+    if table.word_of("type") == Some("conductor") {
+        let required = format!("{}; conductor is not available yet", suggest::list(&TYPES));
+        table.error("type", Kind::Unavailable, &required);
         return None;
     }
-    let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
-    let kind = table.require("type", kind, required)?;
+    let kind = table.needed("type", required, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
     let (mut reference, mut ior) = (None, None);
     let make = match kind {
         "dielectric" => read_dielectric(&mut table).map(|dielectric| {
@@ -47,12 +48,7 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
         _ => read_tabulated(&mut table, &mut reference),
     };
     table.finish();
-    Some(MaterialPart { make: make?, reference, ior, place })
-}
-
-/// A material that needs no file.
-fn made(material: Material) -> Make<Material> {
-    Box::new(move |_| Ok(material))
+    Some(MaterialPart { make: make?, reference, ior })
 }
 
 fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
@@ -64,8 +60,8 @@ fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
 
 fn read_lambertian(table: &mut Table<'_, '_>) -> Option<Material> {
     table.call("a lambertian material");
-    let reflectance = table.number_or_vector("reflectance", &REFLECTANCE);
-    let reflectance = table.require("reflectance", reflectance, REFLECTANCE.words);
+    let reflectance =
+        table.needed("reflectance", REFLECTANCE.words, |t, key| t.number_or_vector(key, &REFLECTANCE));
     let transmittance = table.number_or_vector("transmittance", &TRANSMITTANCE).unwrap_or(DVec3::ZERO);
     let reflectance = reflectance?.to_array();
     if transmittance != DVec3::ZERO {
@@ -80,7 +76,7 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Dielectric> {
     table.call("a dielectric");
     let ior = table.number("ior", &IOR);
     let ior_outside = table.number("ior_outside", &IOR);
-    let ior = table.require("ior", ior, IOR.words)?;
+    let ior = table.needed("ior", IOR.words, |_, _| ior)?;
     if Some(ior) == ior_outside {
         let place = table.place_of("ior").unwrap_or(table.place());
         let found = format!("ior = {ior}, the same as ior_outside");

@@ -132,33 +132,34 @@ impl SceneFile {
         let mut scene = SceneBuilder::new();
         let mut errors = Vec::new();
         // An error without a place of its own gets that of the part of the scene it is about.
-        let placed = |place: Place, e: Diagnostic, name: &str| match e.file() {
+        let name = loader.name.clone();
+        let placed = |place: Place, e: Diagnostic| match e.file() {
             Some(_) => e,
-            None => e.placed(Some(place)).in_file(name),
+            None => e.placed(Some(place)).in_file(&name),
         };
-        for part in parts.emitters.into_iter().flatten() {
+        for (part, place) in parts.emitters.into_iter().flatten() {
             match (part.make)(&mut loader) {
                 Ok(emitter) => {
-                    scene.at(part.place).coloured_emitter(part.name, emitter, part.colour);
+                    scene.at(place).coloured_emitter(part.name, emitter, part.colour);
                     part.medium.map(|medium| _ = scene.emitter_in(medium));
                 }
-                Err(e) => errors.push(placed(part.place, e, &loader.name)),
+                Err(e) => errors.push(placed(place, e)),
             }
         }
         let mut materials = Vec::new();
-        for part in parts.materials.into_iter().flatten() {
-            let made = (part.make)(&mut loader).map_err(|e| errors.push(placed(part.place, e, &loader.name)));
+        for (part, place) in parts.materials.into_iter().flatten() {
+            let made = (part.make)(&mut loader).map_err(|e| errors.push(placed(place, e)));
             materials.push(made.ok().map(|material| (material, part.reference)));
         }
-        for part in parts.surfaces.into_iter().flatten() {
+        for (part, place) in parts.surfaces.into_iter().flatten() {
             let made = (part.shape)(&mut loader).and_then(|shape| {
                 // A material in error is reported already.
                 let Some((material, reference)) = &materials[part.material] else { return Ok(()) };
                 let material = material::laid_on(material, *reference, &shape)?;
-                scene.at(part.place).surface_with(part.name, shape, material, part.options);
+                scene.at(place).surface_with(part.name, shape, material, part.options);
                 Ok(())
             });
-            errors.extend(made.err().map(|e| placed(part.place, e, &loader.name)));
+            errors.extend(made.err().map(|e| placed(place, e)));
         }
         if !errors.is_empty() {
             return Err(errors);
@@ -176,17 +177,18 @@ impl SceneFile {
         if let Some(reflections) = parts.compared_reflections {
             scene.compared_reflections(reflections);
         }
-        let Loader { name, files, warnings } = loader;
         let mut scene = scene
             .build()
             .map_err(|errors| errors.into_iter().map(|e| e.in_file(&name)).collect::<Vec<_>>())?;
-        let files = files.hashes();
+        let files = loader.files.hashes();
         let hash_of = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, hash)| hash.clone());
         // Files that others name (tilt) are in the scene, too.
         let contents: BTreeSet<&str> = files.iter().map(|(_, hash)| hash.as_str()).collect();
         let light = sha256_hex(format!("{}{contents:?}", canonical::canonical(&text, &hash_of)).as_bytes());
         scene.identity = Identity { name, sha256: sha256_hex(text.as_bytes()), text, files, light };
-        scene.warnings = warnings.into_iter().chain(scene.warnings.into_iter().map(|w| w.in_file(&scene.identity.name))).collect();
+        // What the builder found has a place, but no file.
+        let found = scene.warnings.into_iter().map(|w| w.in_file(&scene.identity.name));
+        scene.warnings = loader.warnings.into_iter().chain(found).collect();
         Ok(scene)
     }
 }

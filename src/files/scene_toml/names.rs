@@ -10,15 +10,6 @@ use crate::error::{Diagnostic, Kind, Place};
 /// Longest name, in characters.
 const LONGEST_NAME: usize = 100;
 
-/// A reference by name to a material or a surface.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Reference {
-    /// The name as written.
-    pub name: String,
-    /// Index of the part in the file.
-    pub index: usize,
-}
-
 /// Names with their places and indices; parts with an error keep theirs, so that a reference to one is no
 /// second error.
 pub(crate) struct Names {
@@ -31,35 +22,24 @@ impl Names {
         Self { what, known: BTreeMap::new() }
     }
 
-    /// Add a name; a second use is an error at its place that says where the first one is.
-    pub(crate) fn insert(&mut self, document: &Document<'_>, name: &str, place: Place, index: usize) {
-        self.insert_as(document, name, name, place, index);
-    }
-
-    /// The same for a name that is compared as `key`.
-    pub(crate) fn insert_as(
-        &mut self,
-        document: &Document<'_>,
-        name: &str,
-        key: &str,
-        place: Place,
-        index: usize,
-    ) {
+    /// Add a name, compared as `key`; a second use is an error at its place that says where the first one is.
+    pub(crate) fn insert(&mut self, document: &Document<'_>, name: &Placed<String>, key: &str, index: usize) {
+        let Placed { value: name, place } = name;
         let what = self.what;
         if name.is_empty() || name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
             let found = format!("the {what} name `{}`", shown(name));
             let required =
                 format!("a name of 1 to {LONGEST_NAME} characters, none of them a control character");
-            document.error_at(place, Kind::Range, found, required);
+            document.error_at(*place, Kind::Range, found, required);
         }
         if let Some((first, _)) = self.known.get(key) {
             let found =
                 format!("the {what} name `{}` a second time (first in line {})", shown(name), first.line);
             let required = format!("a name of its own for every {what}");
-            document.error_at(place, Kind::Range, found, required);
+            document.error_at(*place, Kind::Range, found, required);
             return;
         }
-        self.known.insert(key.to_string(), (place, index));
+        self.known.insert(key.to_string(), (*place, index));
     }
 
     /// Names, places and indices in the order of the file.
@@ -70,21 +50,14 @@ impl Names {
         all
     }
 
-    /// The part that `key` names; absent or unknown: an error with the nearest known name.
-    pub(crate) fn refer(&self, table: &mut Table<'_, '_>, key: &'static str) -> Option<Reference> {
-        let what = self.what;
-        let text = table.text(key);
-        let Placed { value: name, place } =
-            table.require(key, text, &format!("the name of a {what}, in quotes"))?;
+    /// The name and the index of the part that `key` names; absent or unknown: an error with the nearest known name.
+    pub(crate) fn refer(&self, table: &mut Table<'_, '_>, key: &'static str) -> Option<(String, usize)> {
+        let required = format!("the name of a {}, in quotes", self.what);
+        let Placed { value: name, place } = table.needed(key, &required, Table::text)?;
         if let Some((_, index)) = self.known.get(&name) {
-            return Some(Reference { name, index: *index });
+            return Some((name, *index));
         }
-        let document = table.document();
-        if document.is_full() {
-            document.count_error();
-            return None;
-        }
-        document.error(self.unknown(&name).at(place.line, place.column));
+        table.document().error(|| self.unknown(&name).at(place.line, place.column));
         None
     }
 
@@ -98,6 +71,6 @@ impl Names {
             many => format!("one of the {many} {what}s of this scene"),
         };
         let found = format!("the unknown {what} `{}`", shown(name));
-        suggest::hinted(Diagnostic::new(Kind::Unknown, found, required), suggest::nearest(name, &names), '`')
+        suggest::hinted(Diagnostic::new(Kind::Unknown, found, required), name, &names, '`')
     }
 }

@@ -23,8 +23,7 @@ impl<'t> Table<'t, '_> {
 
     /// The same, absent: an error.
     pub fn needed_number(&mut self, key: &'static str, interval: &Interval) -> Option<f64> {
-        let number = self.number(key, interval);
-        self.require(key, number, interval.words)
+        self.needed(key, interval.words, |table, key| table.number(key, interval))
     }
 
     fn number_in(&self, label: &str, value: Value<'t>, interval: &Interval) -> Option<f64> {
@@ -38,15 +37,6 @@ impl<'t> Table<'t, '_> {
     /// `N` numbers in this interval, in a list.
     pub fn numbers<const N: usize>(&mut self, key: &'static str, interval: &Interval) -> Option<[f64; N]> {
         let value = self.take(key)?;
-        self.numbers_in(key, value, interval)
-    }
-
-    fn numbers_in<const N: usize>(
-        &self,
-        key: &str,
-        value: Value<'t>,
-        interval: &Interval,
-    ) -> Option<[f64; N]> {
         let required = format!("a list of {N} numbers, each {}", interval.words);
         self.each_of(key, value, &required, |label, item| self.number_in(label, item, interval))
     }
@@ -74,19 +64,18 @@ impl<'t> Table<'t, '_> {
 
     /// The same, absent: an error; `words` are for a message.
     pub fn needed_vector(&mut self, key: &'static str, interval: &Interval, words: &str) -> Option<DVec3> {
-        let vector = self.vector(key, interval);
-        self.require(key, vector, words)
+        self.needed(key, words, |table, key| table.vector(key, interval))
     }
 
     /// A number for all three components, or a vector.
     pub fn number_or_vector(&mut self, key: &'static str, interval: &Interval) -> Option<DVec3> {
-        let value = self.take(key)?;
-        if value.get_ref().is_array() {
-            return self.numbers_in::<3>(key, value, interval).map(DVec3::from_array);
+        if self.is_list(key) {
+            return self.vector(key, interval);
         }
+        let value = self.take(key)?;
         if number_of(value.get_ref()).is_none() {
             let required = format!("{}, or a list of 3 such numbers", interval.words);
-            return self.wrong(key, value, Kind::Syntax, required);
+            return self.wrong(key, value, Kind::Syntax, &required);
         }
         self.number_in(key, value, interval).map(DVec3::splat)
     }

@@ -5,7 +5,6 @@ use glam::DVec3;
 use super::loader::Make;
 use super::table::Placed;
 use crate::emitter::{Colour, Emitter};
-use crate::error::Place;
 use crate::geometry::Shape;
 use crate::scene::SurfaceOptions;
 use crate::scene::media::Medium;
@@ -18,7 +17,6 @@ pub(super) struct EmitterPart {
     /// The medium it stands in, where the scene names one; looked up when the materials are known.
     pub medium_name: Option<Placed<String>>,
     pub medium: Option<Medium>,
-    pub place: Place,
 }
 
 pub(super) struct MaterialPart {
@@ -27,7 +25,6 @@ pub(super) struct MaterialPart {
     pub reference: Option<DVec3>,
     /// Refractive index of a material that can name a medium.
     pub ior: Option<f64>,
-    pub place: Place,
 }
 
 pub(super) struct SurfacePart {
@@ -38,5 +35,4 @@ pub(super) struct SurfacePart {
     /// The word for a shape on which a receiver has a value a face.
     pub of_faces: Option<&'static str>,
     pub options: SurfaceOptions,
-    pub place: Place,
 }

@@ -34,9 +34,9 @@ pub struct RunDefaults {
 
 /// The parts of a scene; `None` stands for one with an error, so that indices stay those of the file.
 pub(super) struct Parts {
-    pub emitters: Vec<Option<EmitterPart>>,
-    pub materials: Vec<Option<MaterialPart>>,
-    pub surfaces: Vec<Option<SurfacePart>>,
+    pub emitters: Vec<Option<(EmitterPart, Place)>>,
+    pub materials: Vec<Option<(MaterialPart, Place)>>,
+    pub surfaces: Vec<Option<(SurfacePart, Place)>>,
     pub receivers: Vec<Option<(ReceiverSpec, Place)>>,
     pub camera: Option<(Camera, Option<Medium>, Place)>,
     pub ambient: Option<Medium>,
@@ -53,65 +53,49 @@ impl Parts {
 
         let emitter_tables = parts_named(&mut root, "emitter");
         if root.place_of("emitter").is_none() {
-            document.error_at(
-                start,
-                Kind::Missing,
-                "a scene without [[emitter]]",
-                "at least one [[emitter]]",
-            );
+            let found = "a scene without [[emitter]]";
+            document.error_at(start, Kind::Missing, found, "at least one [[emitter]]");
         }
         let mut names = Names::new("emitter");
-        let mut emitters: Vec<_> = emitter_tables
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| emitter::read(table, index, &mut names))
-            .collect();
+        let mut emitters = read_each(emitter_tables, |table, index| emitter::read(table, index, &mut names));
 
         let material_tables = root
             .table("material", "the materials")
             .map(|t| t.named_tables("a [material.NAME]", MOST_PARTS, "a table [material.NAME]"))
             .unwrap_or_default();
         let mut material_names = Names::new("material");
-        let mut materials = Vec::new();
-        for (index, (name, table)) in material_tables.into_iter().enumerate() {
-            material_names.insert(document, &name, table.place(), index);
-            materials.push(material::read(table));
-        }
+        let (names, tables): (Vec<_>, Vec<_>) = material_tables.into_iter().unzip();
+        let materials = read_each(tables, |table, index| {
+            let name = Placed { value: names[index].clone(), place: table.place() };
+            material_names.insert(document, &name, &name.value, index);
+            material::read(table)
+        });
 
         let named = RefCell::new(Vec::new());
         let medium = |name: &Placed<String>| {
             named.borrow_mut().push(name.value.clone());
             medium_named(document, name, &material_names, &materials)
         };
-        for part in emitters.iter_mut().flatten() {
+        for (part, _) in emitters.iter_mut().flatten() {
             part.medium = part.medium_name.as_ref().and_then(medium);
         }
         let ambient = root.table("ambient", "[ambient]").and_then(|mut table| {
-            let name = table.text("medium");
-            let name = table.require("medium", name, "the name of a dielectric material, or \"air\"");
+            let required = "the name of a dielectric material, or \"air\"";
+            let name = table.needed("medium", required, |t, key| t.text(key));
             table.finish();
             medium(&name?)
         });
 
         let mut surface_names = Names::new("surface");
         let mut cells = 0;
-        let surfaces: Vec<_> = parts_named(&mut root, "surface")
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| {
-                surface::read(table, index, &mut surface_names, &material_names, &mut cells)
-            })
-            .collect();
+        let surfaces = read_each(parts_named(&mut root, "surface"), |table, index| {
+            surface::read(table, index, &mut surface_names, &material_names, &mut cells)
+        });
 
         let mut names = Names::new("receiver");
-        let receivers: Vec<_> = parts_named(&mut root, "receiver")
-            .into_iter()
-            .enumerate()
-            .map(|(index, table)| {
-                let place = table.place();
-                Some((receiver::read(table, index, &mut names, &surface_names, &surfaces)?, place))
-            })
-            .collect();
+        let receivers = read_each(parts_named(&mut root, "receiver"), |table, index| {
+            receiver::read(table, index, &mut names, &surface_names, &surfaces)
+        });
         if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
             let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
@@ -130,6 +114,18 @@ impl Parts {
     }
 }
 
+/// What `read` makes of each table and its index, with the place of its header.
+fn read_each<'t, 'd, T>(
+    tables: Vec<Table<'t, 'd>>,
+    mut read: impl FnMut(Table<'t, 'd>, usize) -> Option<T>,
+) -> Vec<Option<(T, Place)>> {
+    let read = |(index, table): (usize, Table<'t, 'd>)| {
+        let place = table.place();
+        Some((read(table, index)?, place))
+    };
+    tables.into_iter().enumerate().map(read).collect()
+}
+
 /// The tables `[[key]]` of the scene.
 fn parts_named<'t, 'd>(root: &mut Table<'t, 'd>, key: &'static str) -> Vec<Table<'t, 'd>> {
     let what = format!("an [[{key}]]").replace("an [[s", "a [[s").replace("an [[r", "a [[r");
@@ -142,7 +138,7 @@ fn medium_named(
     document: &Document<'_>,
     name: &Placed<String>,
     names: &Names,
-    materials: &[Option<MaterialPart>],
+    materials: &[Option<(MaterialPart, Place)>],
 ) -> Option<Medium> {
     let known = names.in_order().into_iter().find(|(known, _, _)| *known == name.value);
     let Some((_, _, index)) = known else {
@@ -154,7 +150,7 @@ fn medium_named(
         return None;
     };
     // A material in error is reported already.
-    let material = materials[index].as_ref()?;
+    let (material, _) = materials[index].as_ref()?;
     if material.ior.is_none() {
         let found = format!("the material `{}`, which is no medium", shown(&name.value));
         document.error_at(name.place, Kind::Range, found, "a material with type = \"dielectric\"");
@@ -162,8 +158,13 @@ fn medium_named(
     Some(Medium { name: name.value.clone(), ior: material.ior? })
 }
 
-fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<SurfacePart>], media: &[String]) {
-    let used: Vec<usize> = surfaces.iter().flatten().map(|s| s.material).collect();
+fn warn_unused(
+    document: &Document<'_>,
+    names: &Names,
+    surfaces: &[Option<(SurfacePart, Place)>],
+    media: &[String],
+) {
+    let used: Vec<usize> = surfaces.iter().flatten().map(|(s, _)| s.material).collect();
     for (name, place, index) in names.in_order() {
         if !used.contains(&index) && !media.iter().any(|medium| medium == name) {
             let found = format!("the material `{name}`, which no surface has");
@@ -175,8 +176,8 @@ fn warn_unused(document: &Document<'_>, names: &Names, surfaces: &[Option<Surfac
 /// `[compare]`: reflections.
 fn read_compare(mut table: Table<'_, '_>) -> Option<u32> {
     let words = format!("a whole number from 0 to {MOST_COMPARED_REFLECTIONS}");
-    let reflections = table.integer("reflections", 0, MOST_COMPARED_REFLECTIONS, &words);
-    let reflections = table.require("reflections", reflections, &words);
+    let reflections =
+        table.needed("reflections", &words, |t, key| t.integer(key, 0, MOST_COMPARED_REFLECTIONS, &words));
     table.finish();
     reflections.map(|r| r as u32)
 }

@@ -1,9 +1,9 @@
 //! `[[receiver]]`: what is measured.
 
-use super::names::{Names, Reference};
+use super::names::Names;
 use super::part::SurfacePart;
 use super::table::{Placed, Table};
-use crate::error::Kind;
+use crate::error::{Kind, Place};
 use crate::scene::receiver::{CELLS_REQUIRED, MOST_CELLS, ReceiverEvents, ReceiverSide, ReceiverSpec};
 
 const SIDES: [(&str, ReceiverSide); 3] =
@@ -20,27 +20,31 @@ pub(super) fn read(
     index: usize,
     names: &mut Names,
     surface_names: &Names,
-    surfaces: &[Option<SurfacePart>],
+    surfaces: &[Option<(SurfacePart, Place)>],
 ) -> Option<ReceiverSpec> {
     let given = table.text("name");
     let surface = surface_names.refer(&mut table, "surface");
     let name = match (given, &surface) {
         (Some(given), _) => Some(given),
-        (None, Some(surface)) if table.place_of("name").is_none() => {
-            Some(Placed { value: surface.name.clone(), place: table.place_of("surface")? })
+        (None, Some((surface, _))) if table.place_of("name").is_none() => {
+            Some(Placed { value: surface.clone(), place: table.place_of("surface")? })
         }
         _ => None,
     };
     if let Some(name) = &name {
         // Cases are not told apart: some file systems don't, and the names become file names.
-        names.insert_as(table.document(), &name.value, &name.value.to_lowercase(), name.place, index);
+        names.insert(table.document(), name, &name.value.to_lowercase(), index);
     }
     let cells = table.cells("cells", MOST_CELLS, CELLS_REQUIRED);
-    check_cells(&table, surface.as_ref(), surfaces);
+    let part = surface.as_ref().and_then(|(_, index)| surfaces.get(*index)?.as_ref());
+    let of_faces = part.and_then(|(part, _)| part.of_faces);
+    if let Some(word) = of_faces.filter(|_| table.place_of("cells").is_some()) {
+        table.error("cells", Kind::Range, &format!("no cells: a {word} has one value a triangle"));
+    }
     let side = table.word("side", &SIDES).unwrap_or_default();
     let events = table.word("events", &EVENTS).unwrap_or_default();
     let spec = name.and_then(|name| {
-        let surface = surface.map_or_else(String::new, |s| s.name);
+        let (surface, _) = surface.unwrap_or_default();
         let spec = table.accept(ReceiverSpec::new(name.value, surface))?.on_side(side).of_events(events);
         match cells {
             Some(cells) => table.accept(spec.with_cells(cells)),
@@ -49,13 +53,4 @@ pub(super) fn read(
     });
     table.finish();
     spec
-}
-
-/// That no cells are asked for where there is a value a triangle.
-fn check_cells(table: &Table<'_, '_>, surface: Option<&Reference>, surfaces: &[Option<SurfacePart>]) {
-    let Some(Some(part)) = surface.and_then(|s| surfaces.get(s.index)) else { return };
-    if let Some(word) = part.of_faces.filter(|_| table.place_of("cells").is_some()) {
-        let required = format!("no cells: a {word} has one value a triangle");
-        table.error("cells", Kind::Range, required);
-    }
 }

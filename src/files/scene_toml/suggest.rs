@@ -6,7 +6,7 @@ use crate::error::Diagnostic;
 ///
 /// Case is ignored, and a swap of two neighbours counts as one difference. Near enough is: at most half of the longer word's characters differ, or one of the two is
 /// a beginning of the other of at least two characters. Of equally near words the first listed wins.
-pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     // A longer word matches nothing here, and the distance costs the product of both lengths.
     const LONGEST_WORD: usize = 64;
     if word.len() > LONGEST_WORD {
@@ -27,9 +27,9 @@ pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     best.map(|(_, candidate)| candidate)
 }
 
-/// The error with the word that was probably meant, in these quotation marks.
-pub fn hinted(error: Diagnostic, near: Option<&str>, mark: char) -> Diagnostic {
-    match near {
+/// The error with the known word that was probably meant instead of `word`, in these quotation marks.
+pub fn hinted(error: Diagnostic, word: &str, known: &[&str], mark: char) -> Diagnostic {
+    match nearest(word, known) {
         Some(near) => error.hint(format!("did you mean {mark}{near}{mark}?")),
         None => error,
     }

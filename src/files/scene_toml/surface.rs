@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::heightfield;
-use super::loader::Make;
+use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::SurfacePart;
@@ -32,18 +32,15 @@ pub(super) fn read(
     materials: &Names,
     cells: &mut u64,
 ) -> Option<SurfacePart> {
-    let place = table.place();
-    let name = table.text("name");
-    let name = table.require("name", name, "a name of its own, in quotes");
+    let name = table.needed("name", "a name of its own, in quotes", Table::text);
     if let Some(name) = &name {
-        names.insert(table.document(), &name.value, name.place, index);
+        names.insert(table.document(), name, &name.value, index);
     }
     let material = materials.refer(&mut table, "material");
     let transform = read_transform(&mut table);
     let options = read_options(&mut table);
-    let kind = table.word("type", &TYPES.map(|word| (word, word)));
     let words = "\"mesh\", \"rectangle\", \"box\", \"sphere\", \"paraboloid\" or \"heightfield\"";
-    let kind = table.require("type", kind, words)?;
+    let kind = table.needed("type", words, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
     let shape: Option<Make<Shape>> = match kind {
         "mesh" => read_mesh(&mut table, transform),
         "heightfield" => {
@@ -59,13 +56,13 @@ pub(super) fn read(
                 "sphere" => read_sphere(&mut table).map(Shape::Sphere),
                 _ => read_paraboloid(&mut table).map(Shape::Paraboloid),
             };
-            let moved = shape.zip(transform).and_then(|(shape, t)| table.accept(moved(shape, &t)));
-            moved.map(|shape| -> Make<Shape> { Box::new(move |_| Ok(shape)) })
+            shape.zip(transform).and_then(|(shape, t)| table.accept(moved(shape, &t))).map(made)
         }
     };
     table.finish();
     let of_faces = ["mesh", "box", "heightfield"].contains(&kind).then_some(kind);
-    Some(SurfacePart { name: name?.value, material: material?.index, shape: shape?, of_faces, options, place })
+    let (name, material) = (name?.value, material?.1);
+    Some(SurfacePart { name, material, shape: shape?, of_faces, options })
 }
 
 /// `contact` and `priority`.

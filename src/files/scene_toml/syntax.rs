@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeTable, Error};
 
 use super::document::{Document, cut};
-use crate::error::{Diagnostic, Kind};
+use crate::error::Kind;
 
 /// Most syntax errors that are told: after the first few the rest tend to be their echoes.
 const MOST_SYNTAX_ERRORS: usize = 20;
@@ -46,7 +46,7 @@ pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
             _ => (not_toml(text, place.line, excerpt.trim()), rule_of(text, place.line)),
         };
         told.push(place.line);
-        document.error(Diagnostic::new(Kind::Syntax, found, required).placed(Some(place)));
+        document.error_at(place, Kind::Syntax, found, required);
     }
 }
 

@@ -56,9 +56,14 @@ impl<'t, 'd> Table<'t, 'd> {
         self.document.place(value.span().start)
     }
 
-    /// Whether the value of a key is a text: for keys that take a word or a number.
-    pub fn is_text(&self, key: &str) -> bool {
-        self.entries.get(key).is_some_and(|value| value.get_ref().is_str())
+    /// The value of a key, if it is a text: for keys that take a word or a number.
+    pub fn word_of(&self, key: &str) -> Option<&'t str> {
+        self.entries.get(key)?.get_ref().as_str()
+    }
+
+    /// Whether it is a list.
+    pub(super) fn is_list(&self, key: &str) -> bool {
+        self.entries.get(key).is_some_and(|value| value.get_ref().is_array())
     }
 
     /// The value of a key, which is known from now on.
@@ -67,17 +72,8 @@ impl<'t, 'd> Table<'t, 'd> {
         self.entries.get(key)
     }
 
-    /// Whether `key` names one of these words, which mean something but cannot be used yet: an error that
-    /// says so.
-    pub fn is_unavailable(&self, key: &str, later: &[&str], available: &[&str]) -> bool {
-        let Some(value) = self.entries.get(key) else { return false };
-        let Some(word) = value.get_ref().as_str().filter(|word| later.contains(word)) else { return false };
-        let required = format!("{}; {word} is not available yet", suggest::list(available));
-        self.wrong::<()>(key, value, Kind::Unavailable, required).is_none()
-    }
-
     /// Keep an error about the value of `key` (about the table, if the key is absent).
-    pub fn error(&self, key: &str, kind: Kind, required: impl Into<String>) {
+    pub fn error(&self, key: &str, kind: Kind, required: &str) {
         match self.entries.get(key) {
             Some(value) => _ = self.wrong::<()>(key, value, kind, required),
             None => self.missing(key, required),
@@ -85,13 +81,7 @@ impl<'t, 'd> Table<'t, 'd> {
     }
 
     /// Keep an error about a value; nothing is made of it.
-    pub(super) fn wrong<T>(
-        &self,
-        label: &str,
-        value: Value<'t>,
-        kind: Kind,
-        required: impl Into<String>,
-    ) -> Option<T> {
+    pub(super) fn wrong<T>(&self, label: &str, value: Value<'t>, kind: Kind, required: &str) -> Option<T> {
         self.document.error_at(self.at(value), kind, self.shown(label, value), required);
         None
     }
@@ -103,19 +93,25 @@ impl<'t, 'd> Table<'t, 'd> {
     /// What a constructor made of the values; what it refused is an error at the key that it names.
     pub fn accept<T>(&self, made: Result<T, Invalid>) -> Option<T> {
         made.map_err(|e| match self.entries.get(e.what()) {
-            Some(_) => self.error(e.what(), e.kind(), e.required()),
+            Some(_) => self.error(e.what(), e.kind(), &e.required()),
             None => self.document.error_at(self.place, e.kind(), e.found(), e.required()),
         })
         .ok()
     }
 
-    fn missing(&self, key: &str, required: impl Into<String>) {
+    fn missing(&self, key: &str, required: &str) {
         let found = format!("{} without `{key}`", self.what);
-        self.document.error_at(self.place, Kind::Missing, found, format!("{key} = {}", required.into()));
+        self.document.error_at(self.place, Kind::Missing, found, format!("{key} = {required}"));
     }
 
-    /// What a taken value is; absent or wrong: an error.
-    pub fn require<T>(&self, key: &str, value: Option<T>, required: &str) -> Option<T> {
+    /// What `read` makes of a key; absent: an error.
+    pub fn needed<T>(
+        &mut self,
+        key: &'static str,
+        required: &str,
+        read: impl FnOnce(&mut Self, &'static str) -> Option<T>,
+    ) -> Option<T> {
+        let value = read(self, key);
         if value.is_none() && !self.entries.contains_key(key) {
             self.missing(key, required);
         }
@@ -134,8 +130,7 @@ impl<'t, 'd> Table<'t, 'd> {
     /// The path of a file: a text that is not empty.
     pub fn path(&mut self, key: &'static str) -> Option<Placed<String>> {
         const REQUIRED: &str = "the path of a file, relative to the scene file";
-        let path = self.text(key);
-        let path = self.require(key, path, REQUIRED)?;
+        let path = self.needed(key, REQUIRED, Self::text)?;
         if path.value.is_empty() || path.value.contains('\0') {
             self.error(key, Kind::Range, REQUIRED);
             return None;
@@ -152,9 +147,11 @@ impl<'t, 'd> Table<'t, 'd> {
             return Some(*meaning);
         }
         let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-        let near = found.and_then(|word| suggest::nearest(word, &known));
-        let error = Diagnostic::new(Kind::Unknown, self.shown(key, value), suggest::list(&known));
-        self.document.error(suggest::hinted(error, near, '"').placed(Some(self.at(value))));
+        self.document.error(|| {
+            let error = Diagnostic::new(Kind::Unknown, self.shown(key, value), suggest::list(&known));
+            let error = error.placed(Some(self.at(value)));
+            suggest::hinted(error, found.unwrap_or_default(), &known, '"')
+        });
         None
     }
 
@@ -224,15 +221,13 @@ impl<'t, 'd> Table<'t, 'd> {
     /// Report every key that nobody asked for, with the nearest one that is known here.
     pub fn finish(self) {
         for (key, _) in self.entries.iter().filter(|(key, _)| !self.known.contains(&key.get_ref().as_ref())) {
-            if self.document.is_full() {
-                self.document.count_error();
-                continue;
-            }
-            let name = key.get_ref().as_ref();
-            let found = format!("the unknown key `{}` in {}", shown(name), self.what);
-            let error = Diagnostic::new(Kind::Unknown, found, suggest::list(&self.known));
-            let error = suggest::hinted(error, suggest::nearest(name, &self.known), '`');
-            self.document.error(error.placed(Some(self.document.place(key.span().start))));
+            self.document.error(|| {
+                let name = key.get_ref().as_ref();
+                let found = format!("the unknown key `{}` in {}", shown(name), self.what);
+                let error = Diagnostic::new(Kind::Unknown, found, suggest::list(&self.known));
+                let error = error.placed(Some(self.document.place(key.span().start)));
+                suggest::hinted(error, name, &self.known, '`')
+            });
         }
     }
 }

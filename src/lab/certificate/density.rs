@@ -8,7 +8,7 @@
 //! Inside a cell the candela is linear in either angle, so two nodes along each determine it. All nodes lie
 //! inside cells, where rounding cannot put them into another one.
 
-use super::quadrature::{Gauss, TWO_POINT, at_nodes};
+use super::quadrature::{GAUSS, TWO_POINT, at_nodes};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::photometry::{PhotometricType, Web};
 
@@ -18,7 +18,6 @@ pub struct Density<'w> {
     web: &'w Web,
     polar_rad: Vec<f64>,
     azimuth_rad: Vec<f64>,
-    rule: Gauss,
     /// Integral over phi from the first azimuth to each, cd rad, at the two nodes of theta in each row:
     /// `[row * azimuths + azimuth]`.
     along_phi: Vec<[f64; 2]>,
@@ -39,9 +38,8 @@ impl<'w> Density<'w> {
     pub fn new(web: &'w Web) -> Result<Self> {
         let grid = web.full_grid();
         let (polar_rad, azimuth_rad) = (grid.polar_rad, grid.azimuth_rad);
-        let rule = Gauss::new();
         let (along_phi, mass_lm, below_lm) = (Vec::new(), Vec::new(), vec![0.0]);
-        let mut density = Self { web, polar_rad, azimuth_rad, rule, along_phi, mass_lm, below_lm };
+        let mut density = Self { web, polar_rad, azimuth_rad, along_phi, mass_lm, below_lm };
         let mut total_lm = 0.0;
         for row in 1..density.polar_rad.len() {
             total_lm += density.add_row(row - 1);
@@ -57,13 +55,13 @@ impl<'w> Density<'w> {
 
     /// Integrates one row; its mass.
     fn add_row(&mut self, row: usize) -> f64 {
-        let (theta, width) = (self.polar_rad[row], self.row_width(row));
+        let (theta, width) = (self.polar_rad[row], width_of(&self.polar_rad, row));
         let thetas = TWO_POINT.map(|t| theta + t * width);
         let weights = self.sine_weights(row, width);
         let (mut to, mut row_lm) = ([0.0; 2], 0.0);
         self.along_phi.push(to);
         for column in 0..self.columns() {
-            let (phi, width) = (self.azimuth_rad[column], self.column_width(column));
+            let (phi, width) = (self.azimuth_rad[column], width_of(&self.azimuth_rad, column));
             let cell = thetas.map(|theta| self.integral_over_phi(theta, phi, width));
             to = [to[0] + cell[0], to[1] + cell[1]];
             self.along_phi.push(to);
@@ -77,9 +75,9 @@ impl<'w> Density<'w> {
     /// Integrals over theta, from the row's near edge over a width s, of sin(theta) times the linear function
     /// that is 1 at one of the two nodes of the row and 0 at the other.
     fn sine_weights(&self, row: usize, s: f64) -> [f64; 2] {
-        let (theta, width) = (self.polar_rad[row], self.row_width(row));
+        let (theta, width) = (self.polar_rad[row], width_of(&self.polar_rad, row));
         let mut weights = [0.0; 2];
-        for (x, weight) in self.rule.points() {
+        for (x, weight) in GAUSS {
             let sine = weight * libm::sin(theta + x * s);
             let nodes = at_nodes(x * s / width);
             weights = [weights[0] + sine * nodes[0], weights[1] + sine * nodes[1]];
@@ -125,14 +123,14 @@ impl<'w> Density<'w> {
     /// under the density.
     pub fn place(&self, cell: usize, theta: f64, phi: f64) -> [f64; 4] {
         let (row, column) = (cell / self.columns(), cell % self.columns());
-        let s = (theta - self.polar_rad[row]).clamp(0.0, self.row_width(row));
-        let nodes = at_nodes(s / self.row_width(row));
+        let s = (theta - self.polar_rad[row]).clamp(0.0, width_of(&self.polar_rad, row));
+        let nodes = at_nodes(s / width_of(&self.polar_rad, row));
         let first = row * (self.columns() + 1);
         let [near, far, all] = [column, column + 1, self.columns()].map(|to| {
             let at = self.along_phi[first + to];
             nodes[0] * at[0] + nodes[1] * at[1]
         });
-        let x = (phi - self.azimuth_rad[column]).clamp(0.0, self.column_width(column));
+        let x = (phi - self.azimuth_rad[column]).clamp(0.0, width_of(&self.azimuth_rad, column));
         let part = self.integral_over_phi(theta, self.azimuth_rad[column], x);
         let whole = self.along_phi[first + self.columns()];
         let weights = self.sine_weights(row, s);
@@ -151,14 +149,11 @@ impl<'w> Density<'w> {
             fraction(part, far - near),
         ]
     }
+}
 
-    fn row_width(&self, row: usize) -> f64 {
-        self.polar_rad[row + 1] - self.polar_rad[row]
-    }
-
-    fn column_width(&self, column: usize) -> f64 {
-        self.azimuth_rad[column + 1] - self.azimuth_rad[column]
-    }
+/// The width of an interval between edges.
+fn width_of(edges: &[f64], interval: usize) -> f64 {
+    edges[interval + 1] - edges[interval]
 }
 
 /// The interval between edges that holds x.

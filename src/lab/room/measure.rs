@@ -64,13 +64,9 @@ impl Measurement {
 
 /// The reflections M that a scene names.
 pub(super) fn reflections(scene: &Scene) -> Result<u32> {
-    scene.compared_reflections.ok_or_else(|| {
-        Diagnostic::new(
-            Kind::Missing,
-            "a scene without [compare]",
-            "[compare] with reflections = M, the number of reflections of every photon",
-        )
-    })
+    let required = "[compare] with reflections = M, the number of reflections of every photon";
+    let missing = || Diagnostic::new(Kind::Missing, "a scene without [compare]", required);
+    scene.compared_reflections.ok_or_else(missing)
 }
 
 /// Traces the photons of a task through exactly M reflections each; `progress` is told the number of photons

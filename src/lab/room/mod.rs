@@ -37,11 +37,9 @@ impl Options {
     /// Numbers that do not rise, fewer than two; no seed.
     pub fn new(ladder: Vec<u64>, seeds: Vec<u64>) -> Result<Self> {
         if ladder.len() < 2 || !ladder.is_sorted_by(|a, b| a < b) || seeds.is_empty() {
-            return Err(Diagnostic::new(
-                Kind::Range,
-                format!("photons {ladder:?} and seeds {seeds:?}"),
-                "two or more rising numbers of photons, and a seed",
-            ));
+            let found = format!("photons {ladder:?} and seeds {seeds:?}");
+            let required = "two or more rising numbers of photons, and a seed";
+            return Err(Diagnostic::new(Kind::Range, found, required));
         }
         Ok(Self { ladder, seeds })
     }

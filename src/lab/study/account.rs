@@ -5,7 +5,7 @@
 //! the walk asks for them, and the rules of METHOD 1 and 2 are applied to the counts; the proposals of a
 //! rejection come from the table's integrals.
 
-use crate::emitter::Emits;
+use crate::emitter::{Emits, Emitter};
 use crate::run::Algorithm;
 use crate::sample::choose::Reusable;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
@@ -61,24 +61,6 @@ impl Events {
             equation_6: 2.0 + 2.0 * self.scattered + self.end,
         }
     }
-}
-
-impl Events {
-    fn fields(&mut self) -> [&mut f64; 10] {
-        let [cells, whole] = &mut self.table_proposals;
-        [
-            &mut self.specular,
-            &mut self.scattered,
-            &mut self.end,
-            &mut self.decisions,
-            &mut self.shared,
-            &mut self.continuous,
-            &mut self.tables,
-            &mut self.table_choices,
-            cells,
-            whole,
-        ]
-    }
 
     /// Coordinates of scattered directions.
     fn scattering(&self, algorithm: Algorithm) -> f64 {
@@ -101,39 +83,30 @@ impl Events {
 fn emission(scene: &Scene, algorithm: Algorithm) -> f64 {
     let emitters = scene.emitters.as_slice();
     let chosen_emitter = emitters.iter().filter(|e| e.flux_lm() > 0.0).count() > 1;
-    let total = scene.emitters.flux_lm();
-    emitters
-        .iter()
-        .map(|emitter| {
-            let cells = emitter.table();
-            let chosen_cell = cells.is_some_and(|grid| !grid.choice().is_single());
-            let own = |choices: [bool; 2]| {
-                let choices = choices.iter().filter(|c| **c).count() as f64;
-                if algorithm.variant.reuses() { 0.0 } else { choices }
-            };
-            let coordinates = match (algorithm.sampling(), cells) {
-                (Sampling::Rejection(Rejection::Cell), Some(grid)) => {
-                    own([chosen_emitter, chosen_cell]) + 3.0 * grid.proposals_of_cells()
-                }
-                (Sampling::Rejection(_), Some(grid)) => {
-                    own([chosen_emitter, false]) + 3.0 * grid.proposals_of_table()
-                }
-                _ => own([chosen_emitter, chosen_cell]) + f64::from(emitter.kind().coordinates),
-            };
-            emitter.flux_lm() / total * coordinates
-        })
-        .sum()
+    let of_emitter = |emitter: &Emitter| {
+        let (sampling, table) = (algorithm.sampling(), emitter.table());
+        let chooses_cell = !matches!(sampling, Sampling::Rejection(Rejection::Table | Rejection::NextPoint));
+        let chosen_cell = chooses_cell && table.is_some_and(|grid| !grid.choice().is_single());
+        let choices = f64::from(u8::from(chosen_emitter) + u8::from(chosen_cell));
+        let direction = match (sampling, table) {
+            (Sampling::Rejection(Rejection::Cell), Some(grid)) => 3.0 * grid.proposals_of_cells(),
+            (Sampling::Rejection(_), Some(grid)) => 3.0 * grid.proposals_of_table(),
+            _ => f64::from(emitter.kind().coordinates),
+        };
+        let own = if algorithm.variant.reuses() { 0.0 } else { choices };
+        emitter.flux_lm() / scene.emitters.flux_lm() * (own + direction)
+    };
+    emitters.iter().map(of_emitter).sum()
 }
 
 fn count<P: Points>(scene: &Scene, points: &P) -> Events {
-    let mut sum = Events::default();
+    let (mut seen, mut sink) = (Events::default(), Arrivals { scene, events: Events::default() });
     for index in 0..PHOTONS {
         let mut chooser =
-            Watched { inner: Coordinates::new(points, index, true), seen: Events::default(), span: None };
+            Watched { inner: Coordinates::new(points, index, true), seen: &mut seen, span: None };
         let Some((emitter, emission)) = scene.emitters.emit(Sampling::default(), &mut chooser.inner) else {
             continue;
         };
-        let mut sink = Arrivals { scene, events: Events::default() };
         let start = scene.start(emitter);
         let exceptions = &mut Exceptions::default();
         let end = if scene.is_coloured() {
@@ -142,23 +115,29 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
         } else {
             walk(scene, emission, start, Grey, &mut chooser, &mut sink, exceptions)
         };
-        let mut events = sink.events;
         match end {
             End::Absorbed(surface) => {
                 // The last arrival was no scattering.
-                events.end = 2.0;
+                sink.events.end += 2.0;
                 if scene.material(surface).scatters() {
-                    events.scattered -= 1.0;
+                    sink.events.scattered -= 1.0;
                 }
             }
-            End::Escaped | End::Missed | End::Killed => events.end = 1.0,
-        }
-        for mut part in [events, chooser.seen] {
-            sum.fields().into_iter().zip(part.fields()).for_each(|(sum, part)| *sum += *part);
+            End::Escaped | End::Missed | End::Killed => sink.events.end += 1.0,
         }
     }
-    sum.fields().into_iter().for_each(|field| *field /= PHOTONS as f64);
-    sum
+    let (a_photon, arrived) = (|sum: f64| sum / PHOTONS as f64, sink.events);
+    Events {
+        specular: a_photon(arrived.specular),
+        scattered: a_photon(arrived.scattered),
+        end: a_photon(arrived.end),
+        decisions: a_photon(seen.decisions),
+        shared: a_photon(seen.shared),
+        continuous: a_photon(seen.continuous),
+        tables: a_photon(seen.tables),
+        table_choices: a_photon(seen.table_choices),
+        table_proposals: arrived.table_proposals.map(a_photon),
+    }
 }
 
 /// Counts arrivals by what the surface is.
@@ -187,7 +166,7 @@ impl<T> Sink<T> for Arrivals<'_> {
 /// Passes questions on and counts them.
 struct Watched<'p, P> {
     inner: Coordinates<'p, P>,
-    seen: Events,
+    seen: &'p mut Events,
     /// Probability of what was decided on the coordinate in use; `None` before the first.
     span: Option<f64>,
 }

@@ -36,10 +36,8 @@ impl<'s> Grids<'s> {
             return fail("a scene without receivers", "a [[receiver]] to measure errors on");
         }
         if let Some(bad) = cells.iter().find(|k| !(1..=MOST_CELLS).contains(*k)) {
-            return fail(
-                &format!("grids of {bad} x {bad} cells"),
-                &format!("1 to {MOST_CELLS} cells a side"),
-            );
+            let found = format!("grids of {bad} x {bad} cells");
+            return fail(&found, &format!("1 to {MOST_CELLS} cells a side"));
         }
         let is_divided = |r: &&Receiver| matches!(r.cells, Cells::Grid { .. });
         let (divided, meshes): (Vec<&Receiver>, Vec<_>) = scene.receivers.iter().partition(is_divided);

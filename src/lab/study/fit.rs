@@ -66,14 +66,11 @@ impl Law {
         let measured = distinct(chosen.iter().flatten().map(|l| l.photons));
         let used = fitted(&measured);
         chosen.iter_mut().for_each(|levels| levels.retain(|l| used.contains(&l.photons)));
-        let lines: Vec<Line> = chosen.iter().filter_map(|levels| Line::through(levels)).collect();
-        if lines.is_empty() {
-            return None;
-        }
-        let slopes: Vec<f64> = lines.iter().map(|l| l.slope).collect();
+        let (slopes, errors): (Vec<f64>, Vec<Option<f64>>) =
+            chosen.iter().filter_map(|levels| slope(levels)).unzip();
         let (rate, variance) = mean_and_variance(&slopes);
-        let (rate_standard_error, uncertainty) = match (variance, lines[0].slope_error) {
-            (Some(variance), _) => (Some((variance / lines.len() as f64).sqrt()), Uncertainty::Seeds),
+        let (rate_standard_error, uncertainty) = match (variance, *errors.first()?) {
+            (Some(variance), _) => (Some((variance / slopes.len() as f64).sqrt()), Uncertainty::Seeds),
             (None, Some(error)) => (Some(error), Uncertainty::Residuals),
             (None, None) => (None, Uncertainty::Unknown),
         };
@@ -119,30 +116,23 @@ impl Law {
     }
 }
 
-/// A line through ln error over ln N.
-struct Line {
-    slope: f64,
-    slope_error: Option<f64>,
-}
-
-impl Line {
-    /// By least squares; `None` through fewer than two different N.
-    fn through(levels: &[Level]) -> Option<Self> {
-        let points: Vec<[f64; 2]> =
-            levels.iter().map(|l| [libm::log(l.photons as f64), libm::log(l.error)]).collect();
-        let n = points.len() as f64;
-        let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
-        let (x, y) = (mean(0), mean(1));
-        let xx: f64 = points.iter().map(|p| (p[0] - x) * (p[0] - x)).sum();
-        if points.len() < 2 || xx <= 0.0 {
-            return None;
-        }
-        let slope = points.iter().map(|p| (p[0] - x) * (p[1] - y)).sum::<f64>() / xx;
-        let residual = |p: &[f64; 2]| p[1] - y - slope * (p[0] - x);
-        let squares: f64 = points.iter().map(|p| residual(p) * residual(p)).sum();
-        let slope_error = (points.len() > 2).then(|| (squares / (n - 2.0) / xx).sqrt());
-        Some(Self { slope, slope_error })
+/// The slope of the line through ln error over ln N by least squares, and its standard error where that is known; `None` through
+/// fewer than two different N.
+fn slope(levels: &[Level]) -> Option<(f64, Option<f64>)> {
+    let points: Vec<[f64; 2]> =
+        levels.iter().map(|l| [libm::log(l.photons as f64), libm::log(l.error)]).collect();
+    let n = points.len() as f64;
+    let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
+    let (x, y) = (mean(0), mean(1));
+    let xx: f64 = points.iter().map(|p| (p[0] - x) * (p[0] - x)).sum();
+    if points.len() < 2 || xx <= 0.0 {
+        return None;
     }
+    let slope = points.iter().map(|p| (p[0] - x) * (p[1] - y)).sum::<f64>() / xx;
+    let residual = |p: &[f64; 2]| p[1] - y - slope * (p[0] - x);
+    let squares: f64 = points.iter().map(|p| residual(p) * residual(p)).sum();
+    let slope_error = (points.len() > 2).then(|| (squares / (n - 2.0) / xx).sqrt());
+    Some((slope, slope_error))
 }
 
 /// Which of these numbers of photons a law is fitted to: the powers of two, if there are two or more of them.

@@ -116,4 +116,9 @@ impl Study {
     pub fn paper_ratio(&self, variant: &str) -> Option<f64> {
         PAPER_RATIOS.iter().find(|(name, _)| self.built_in && *name == variant).map(|(_, ratio)| *ratio)
     }
+
+    /// Whether the paper says something about any of the variants.
+    pub fn is_of_paper(&self) -> bool {
+        self.variants.iter().any(|v| self.paper_ratio(&v.name).is_some())
+    }
 }

@@ -4,16 +4,12 @@
 //! lies in the bracket whatever the function returns, NaN included, and is reached in a bounded number of evaluations:
 //! a step that leaves the shrinking bracket, or one of a method that has had its turn, is replaced by bisection.
 
-mod bisection;
-mod newton;
+mod bracketed;
 mod ridder;
-mod secant;
 mod series;
 
-pub use bisection::bisection;
-pub use newton::bracketed_newton;
+pub use bracketed::{bisection_step, bracketed, secant_step};
 pub use ridder::ridder;
-pub use secant::bracketed_secant;
 pub use series::{Expansion, bracketed_series};
 
 /// A method for the cell equation (METHOD 3, paper eq. 8).
@@ -44,13 +40,7 @@ impl Solver {
 
     /// The name on the command line and in reports.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Secant => "secant",
-            Self::Newton => "newton",
-            Self::Ridder => "ridder",
-            Self::Bisection => "bisection",
-            Self::QuadraticNewton => "quadratic-newton",
-        }
+        ["secant", "newton", "ridder", "bisection", "quadratic-newton"][self as usize]
     }
 
     /// The solver of a name.

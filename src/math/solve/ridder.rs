@@ -4,25 +4,21 @@ use super::{Root, inside};
 
 /// Root of an increasing function on [low, high] by Ridder's method.
 ///
-/// `f` returns its value and a by-product; `f_low` <= 0 and `f_high` >= 0 are its values at the ends. Each round
+/// `f` returns its value and a by-product; `ends` are low and high with its values there, <= 0 and >= 0. Each round
 /// evaluates the middle, and the point where the line through the three values, straightened by an exponential, crosses
 /// zero. The middle alone halves the bracket, so the number of evaluations is at most twice that of bisection.
 #[inline]
-pub fn ridder<T>(
-    (mut low, mut f_low): (f64, f64),
-    (mut high, mut f_high): (f64, f64),
-    tolerance: f64,
-    mut f: impl FnMut(f64) -> (f64, T),
-) -> Root<T> {
+pub fn ridder<T>(mut ends: [(f64, f64); 2], tolerance: f64, mut f: impl FnMut(f64) -> (f64, T)) -> Root<T> {
     let is_off = |value: f64| value.abs() > tolerance;
     let mut evaluations = 0;
     // A root within the tolerance of an end is that end; the exponential could not find it from inside.
-    for (end, value) in [(low, f_low), (high, f_high)] {
+    for (end, value) in ends {
         if !is_off(value) {
             return Root { x: end, by_product: f(end).1, evaluations: 1 };
         }
     }
     loop {
+        let [(low, f_low), (high, f_high)] = ends;
         let middle = low + 0.5 * (high - low);
         let (value, by_product) = f(middle);
         evaluations += 1;
@@ -30,12 +26,9 @@ pub fn ridder<T>(
             return Root { x: middle, by_product, evaluations };
         }
         let x = middle - (middle - low) * value / (value * value - f_low * f_high).sqrt();
-        if value > 0.0 {
-            (high, f_high) = (middle, value);
-        } else {
-            (low, f_low) = (middle, value);
-        }
-        if !inside(x, low, high) {
+        // The end whose value has the same sign is replaced.
+        ends[usize::from(value > 0.0)] = (middle, value);
+        if !inside(x, ends[0].0, ends[1].0) {
             continue;
         }
         let (value, by_product) = f(x);
@@ -43,11 +36,7 @@ pub fn ridder<T>(
         if !is_off(value) {
             return Root { x, by_product, evaluations };
         }
-        if value > 0.0 {
-            (high, f_high) = (x, value);
-        } else {
-            (low, f_low) = (x, value);
-        }
+        ends[usize::from(value > 0.0)] = (x, value);
     }
 }
 
@@ -56,7 +45,7 @@ mod tests {
     use super::*;
 
     fn root(low: f64, high: f64, f: impl Fn(f64) -> f64) -> Root<()> {
-        ridder((low, f(low)), (high, f(high)), 1e-15, |x| (f(x), ()))
+        ridder([(low, f(low)), (high, f(high))], 1e-15, |x| (f(x), ()))
     }
 
     #[test]
@@ -78,7 +67,7 @@ mod tests {
         }
         assert_eq!(root(0.0, 1.0, |x| x).x, 0.0);
         assert_eq!(root(0.0, 1.0, |x| x - 1.0).x, 1.0);
-        let nothing = ridder((0.0, -0.5), (1.0, 0.5), 1e-15, |_| (f64::NAN, ()));
+        let nothing = ridder([(0.0, -0.5), (1.0, 0.5)], 1e-15, |_| (f64::NAN, ()));
         assert_eq!(nothing.x, 0.5);
     }
 }

@@ -1,6 +1,7 @@
 //! Newton's method on the Taylor series of a function, inside a shrinking bracket.
 
-use super::{OPEN_EVALUATIONS, Root, inside};
+use super::Root;
+use super::bracketed::shrink;
 
 /// A function about a point where it was evaluated.
 #[derive(Debug, Clone, Copy)]
@@ -56,41 +57,27 @@ pub fn bracketed_series<T>(
     if left <= tolerance && next >= low && next <= high {
         return Root { x: next, by_product: at.by_product, evaluations: 1 };
     }
-    further(low, high, (x, at), tolerance, f)
+    further([low, high], (x, at), tolerance, f)
 }
 
 /// What [`bracketed_series`] does after its first evaluation, `at` x, unless that sufficed.
 #[inline(never)]
 fn further<T>(
-    mut low: f64,
-    mut high: f64,
-    (mut x, mut at): (f64, Expansion<T>),
+    bracket: [f64; 2],
+    (x, at): (f64, Expansion<T>),
     tolerance: f64,
     mut f: impl FnMut(f64) -> Expansion<T>,
 ) -> Root<T> {
-    let mut evaluations = 1;
-    while at.value.abs() > tolerance {
-        if at.value > 0.0 {
-            high = x;
-        } else {
-            low = x;
-        }
+    let evaluate = |x: f64| {
+        let at = f(x);
+        (at.value, at)
+    };
+    let step = |x: f64, _: f64, at: &Expansion<T>| {
         let (step, left) = at.step();
-        let next = x + step;
-        let is_inside = inside(next, low, high);
-        if is_inside && left <= tolerance {
-            x = next;
-            break;
-        }
-        let middle = low + 0.5 * (high - low);
-        if !inside(middle, low, high) {
-            break; // The bracket is one ulp wide.
-        }
-        x = if is_inside && evaluations < OPEN_EVALUATIONS { next } else { middle };
-        at = f(x);
-        evaluations += 1;
-    }
-    Root { x, by_product: at.by_product, evaluations }
+        (x + step, left)
+    };
+    let Root { x, by_product, evaluations } = shrink(bracket, (x, (at.value, at)), tolerance, evaluate, step);
+    Root { x, by_product: by_product.by_product, evaluations }
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@
 //! E; at the scattering surface by shadow rays what comes straight from emitters, L D S* E; and from the
 //! photons there what had at least one event before, L (S|D)+ D S* E. Each once.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::emitter::{Emits, Emitter};
@@ -17,21 +19,34 @@ use crate::scene::media::{Interface, Media};
 use crate::surface::{EyeWeight, Incidence, Leg, Material, Way};
 use crate::transport::walk::MAX_EVENTS;
 
-/// What an eye path looks for.
-#[derive(Debug, Clone, Copy)]
-pub struct Looks<'d, const C: usize> {
-    /// Emitters and the background.
-    pub emission: bool,
-    /// Direct light at the scattering surface.
-    pub direct: bool,
-    /// Photons there: as many densities as there are, each with its own bandwidth.
+/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not
+/// hold all of them.
+#[derive(Debug, Clone)]
+pub struct Pass<'d, const C: usize> {
+    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run,
+    /// so that passes add up.
     pub densities: &'d [Density<'d, C>],
+    /// Replicates that have photons in this pass.
+    pub replicates: Range<u32>,
+    /// Whether these replicates end with this pass. A pass that is a part of a replicate has one replicate.
+    pub finishes: bool,
+    /// Whether emitters and the background are added: in one pass only.
+    pub emission: bool,
+    /// Whether direct light is added: in one pass only.
+    pub direct: bool,
+}
+
+impl<const C: usize> Pass<'_, C> {
+    /// Emitters and the background alone: what is left to the eye where every photon is joined to the
+    /// pinhole.
+    pub const EMISSION: Self =
+        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false };
 }
 
 /// An eye path, and what of it is still to be followed.
 pub(crate) struct EyePath<'a, const C: usize> {
     pub view: &'a View<'a>,
-    pub looks: Looks<'a, C>,
+    pub pass: &'a Pass<'a, C>,
     pub gathered: Gathered<C>,
     /// Paths that the guard against endless ones ended.
     pub killed: u64,
@@ -41,8 +56,7 @@ pub(crate) struct EyePath<'a, const C: usize> {
 /// A path on its way.
 #[derive(Debug, Clone)]
 struct Branch {
-    origin: DVec3,
-    direction: DVec3,
+    ray: EyeRay,
     at: Whereabouts,
     weight: EyeWeight,
     /// Its part of the ways that glass offered.
@@ -57,22 +71,16 @@ struct Branch {
 const LEAST_SHARE: f64 = 1.0 / 1024.0;
 
 impl<'a, const C: usize> EyePath<'a, C> {
-    /// Nothing looked at yet; photons of so many replicates are told apart.
-    pub fn new(view: &'a View<'a>, looks: Looks<'a, C>, replicates: usize) -> Self {
-        Self { view, looks, gathered: Gathered::new(replicates), killed: 0, pending: Vec::new() }
+    /// Nothing looked at yet.
+    pub fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>) -> Self {
+        let gathered = Gathered::new(pass.replicates.end as usize);
+        Self { view, pass, gathered, killed: 0, pending: Vec::new() }
     }
 
     /// Follows a ray; gathers what photons bring and returns what is found without them, by channel, cd/m2.
     pub fn look<R: Chooser>(&mut self, ray: EyeRay, chooser: &mut R) -> [f64; 3] {
-        let EyeRay { origin, direction } = ray;
-        self.pending.push(Branch {
-            origin,
-            direction,
-            at: self.view.start.clone(),
-            weight: EyeWeight::ONE,
-            share: 1.0,
-            events: 0,
-        });
+        let at = self.view.start.clone();
+        self.pending.push(Branch { ray, at, weight: EyeWeight::ONE, share: 1.0, events: 0 });
         let mut found = [0.0; 3];
         while let Some(branch) = self.pending.pop() {
             self.follow(branch, &mut found, chooser);
@@ -86,11 +94,11 @@ impl<'a, const C: usize> EyePath<'a, C> {
             if !path.weight.outlast(path.events, chooser) {
                 return;
             }
-            let Branch { origin, direction, weight, .. } = path;
-            let hit = scene.geometry.nearest(origin, direction, &path.at, &mut 0);
-            if self.looks.emission {
+            let Branch { ray, weight, .. } = path;
+            let hit = scene.geometry.nearest(ray.origin, ray.direction, &path.at, &mut 0);
+            if self.pass.emission {
                 let end = hit.as_ref().map_or(f64::INFINITY, |hit| hit.t);
-                add(found, weight, seen(scene, origin, direction, end));
+                add(found, weight, seen(scene, ray, end));
                 if hit.is_none() {
                     add(found, weight, self.view.camera.background_cd_m2);
                 }
@@ -98,7 +106,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
             let Some(hit) = hit else { return };
             let Interface::Between(indices) = scene.media.interface(&hit, &path.at) else {
                 scene.media.leave(&mut path.at, &hit, hit.other_side());
-                path.origin = hit.position;
+                path.ray.origin = hit.position;
                 continue;
             };
             let material = scene.material(hit.surface);
@@ -123,7 +131,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
         chooser: &mut R,
     ) -> bool {
         let media = &self.view.scene.media;
-        let ways = material.specular(&Incidence::of(hit, path.direction, indices));
+        let ways = material.specular(&Incidence::of(hit, path.ray.direction, indices));
         let (way, through, chance) = match (ways.mirrored, ways.through) {
             (None, None) => return false,
             (Some(mirrored), None) => (mirrored, false, 1.0),
@@ -155,9 +163,9 @@ impl<'a, const C: usize> EyePath<'a, C> {
         path: &Branch,
         chooser: &mut R,
     ) -> [f64; 3] {
-        let wo = Leg { direction: -path.direction, front: hit.front };
+        let wo = Leg { direction: -path.ray.direction, front: hit.front };
         let weight = path.weight.weight();
-        for density in self.looks.densities {
+        for density in self.pass.densities {
             if let Some(value) = material.even_value() {
                 let weight = std::array::from_fn(|c| weight[c] * value[c]);
                 density.gather_evenly(hit, channels(weight), &mut self.gathered);
@@ -169,7 +177,7 @@ impl<'a, const C: usize> EyePath<'a, C> {
             density.gather(hit, channels(weight), value, &mut self.gathered);
         }
         let scene = self.view.scene;
-        if !self.looks.direct {
+        if !self.pass.direct {
             // The coordinates are used up all the same, so that what follows is the same path in every pass.
             for emitter in scene.emitters.as_slice() {
                 place_on(emitter, chooser);
@@ -185,16 +193,16 @@ impl Branch {
     fn take(&mut self, media: &Media, hit: &Hit, way: &Way, through: bool, chance: f64) {
         self.weight.follow(way, chance);
         media.leave(&mut self.at, hit, if hit.front == through { Side::Back } else { Side::Front });
-        (self.origin, self.direction) = (hit.position, way.direction);
+        self.ray = EyeRay { origin: hit.position, direction: way.direction };
         self.events += 1;
     }
 }
 
 /// Luminance of the emitters that a ray crosses within a distance.
-fn seen(scene: &Scene, origin: DVec3, direction: DVec3, within_m: f64) -> [f64; 3] {
+fn seen(scene: &Scene, ray: EyeRay, within_m: f64) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (i, emitter) in scene.emitters.as_slice().iter().enumerate() {
-        if let Some((luminance, distance_m)) = emitter.seen(origin, direction)
+        if let Some((luminance, distance_m)) = emitter.seen(ray.origin, ray.direction)
             && distance_m < within_m
         {
             let colour = scene.emitter_colour(i);

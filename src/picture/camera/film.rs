@@ -57,7 +57,8 @@ pub(crate) const TILE_PIXELS: usize = (TILE * TILE) as usize;
 /// the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sums<const C: usize> {
-    pixels: [u32; 2],
+    /// Columns and rows.
+    pub pixels: [u32; 2],
     /// Tile by tile, each row by row; tiles at the right and lower end are whole, too.
     pub(crate) tiles: Vec<PixelSums<C>>,
     /// Replicates whose photons are all in.
@@ -76,11 +77,6 @@ impl<const C: usize> Sums<C> {
         let [across, down] = pixels.map(|n| n.div_ceil(TILE) as usize);
         let tiles = vec![PixelSums::NOTHING; across * down * TILE_PIXELS];
         Ok(Self { pixels, tiles, replicates: 0, sets: 0 })
-    }
-
-    /// Columns and rows.
-    pub fn pixels(&self) -> [u32; 2] {
-        self.pixels
     }
 
     /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it

@@ -17,6 +17,7 @@ pub mod eye;
 pub mod render;
 pub mod splat;
 
+pub use eye::Pass;
 pub use film::{Film, Sums};
-pub use render::{Pass, render};
+pub use render::render;
 pub use view::View;

@@ -1,50 +1,24 @@
 //! Passes of the camera over its pixels, tile by tile over threads; the same bits for any number of them.
 
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::picture::gather::Density;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::hash::stream_key;
 use crate::sequence::owen::OwenPoints;
 use crate::surface::luminance_of;
 
-use super::eye::{EyePath, Looks};
+use super::eye::{EyePath, Pass};
 use super::film::{Sums, TILE, TILE_PIXELS};
 use super::filter;
 use super::pixel::{PixelSums, SETS};
 use super::view::View;
 
-/// What a pass adds to the picture: photons are traced, mapped and dropped pass by pass where memory does not
-/// hold all of them.
-#[derive(Debug, Clone)]
-pub struct Pass<'d, const C: usize> {
-    /// Densities of this pass's photons, caustic and diffuse; their photon's flux is that of the whole run,
-    /// so that passes add up.
-    pub densities: &'d [Density<'d, C>],
-    /// Replicates that have photons in this pass.
-    pub replicates: Range<u32>,
-    /// Whether these replicates end with this pass. A pass that is a part of a replicate has one replicate.
-    pub finishes: bool,
-    /// Whether emitters and the background are added: in one pass only.
-    pub emission: bool,
-    /// Whether direct light is added: in one pass only.
-    pub direct: bool,
-}
-
-impl<const C: usize> Pass<'_, C> {
-    /// Emitters and the background alone: what is left to the eye where every photon is joined to the
-    /// pinhole.
-    pub const EMISSION: Self =
-        Self { densities: &[], replicates: 0..0, finishes: true, emission: true, direct: false };
-}
-
 /// What a pass did beside its pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rendered {
     /// Pixels that an interrupt left unseen: black, of unknown error.
     pub unseen: u64,
@@ -68,10 +42,10 @@ pub fn render<const C: usize>(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Rendered> {
-    if !(C == 3 || (C == 1 && !view.scene.is_coloured())) || sums.pixels() != view.camera.pixels {
+    if !(C == 3 || (C == 1 && !view.scene.is_coloured())) || sums.pixels != view.camera.pixels {
         return Err(Diagnostic::new(
             Kind::Range,
-            format!("a picture of {C} channels and {:?} pixels", sums.pixels()),
+            format!("a picture of {C} channels and {:?} pixels", sums.pixels),
             format!("3 channels for a scene in colour, else 1 or 3; {:?} pixels", view.camera.pixels),
         ));
     }
@@ -108,23 +82,18 @@ pub fn render<const C: usize>(
 
 /// Renders pixels one after another.
 struct Brush<'a, const C: usize> {
-    view: &'a View<'a>,
-    pass: &'a Pass<'a, C>,
+    path: EyePath<'a, C>,
     sets: u32,
     samples_per_set: u32,
-    path: EyePath<'a, C>,
 }
 
 impl<'a, const C: usize> Brush<'a, C> {
     fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>, sets: u32) -> Self {
-        let samples_per_set = view.camera.samples.div_ceil(sets);
-        let looks = Looks { emission: pass.emission, direct: pass.direct, densities: pass.densities };
-        let path = EyePath::new(view, looks, pass.replicates.end as usize);
-        Self { view, pass, sets, samples_per_set, path }
+        Self { path: EyePath::new(view, pass), sets, samples_per_set: view.camera.samples.div_ceil(sets) }
     }
 
     fn paint(&mut self, [column, row]: [u32; 2], sums: &mut PixelSums<C>) {
-        let seed = stream_key(self.view.seed, row, column, SALT);
+        let seed = stream_key(self.path.view.seed, row, column, SALT);
         let of_sample = 1.0 / (f64::from(self.sets) * f64::from(self.samples_per_set));
         self.path.gathered.clear();
         let mut before = [0.0; C];
@@ -143,16 +112,17 @@ impl<'a, const C: usize> Brush<'a, C> {
             before = gathered;
             sums.by_set[set as usize] += (luminance_of(&found) / f64::from(self.samples_per_set)) as f32;
         }
-        let gathered = &self.path.gathered;
-        sums.error.add(gathered, of_sample, self.pass.replicates.clone(), self.pass.finishes);
+        let pass = self.path.pass;
+        sums.error.add(&self.path.gathered, of_sample, pass.replicates.clone(), pass.finishes);
     }
 
     fn sample(&mut self, points: &OwenPoints, k: u32, [column, row]: [u32; 2]) -> [f64; 3] {
         let mut chooser = Coordinates::new(points, u64::from(k), true);
+        let view = self.path.view;
         let mut pair = || [(); 2].map(|()| chooser.uniform(Purpose::BeamPosition));
-        let [dx, dy] = filter::offset(self.view.camera.filter, pair());
+        let [dx, dy] = filter::offset(view.camera.filter, pair());
         let place = DVec2::new(f64::from(column) + 0.5 + dx, f64::from(row) + 0.5 + dy);
-        let pinhole = &self.view.pinhole;
+        let pinhole = &view.pinhole;
         let ray = if pinhole.has_lens() { pinhole.ray_by_lens(place, pair()) } else { pinhole.ray(place) };
         self.path.look(ray, &mut chooser)
     }

@@ -44,10 +44,8 @@ pub struct Choice {
 enum Reach<const C: usize> {
     /// All within this radius (m) by replicate; one entry where it is the same for all.
     Radii(Vec<f64>),
-    /// All within the radius (m), but this many nearest at least.
-    AtLeast(f64, usize, BySurface<C>),
-    /// This many nearest.
-    Nearest(usize, BySurface<C>),
+    /// All within the radius (m), but this many nearest at least; of radius 0 so many.
+    Nearest(f64, u32, BySurface<C>),
 }
 
 /// A photon map with a bandwidth.
@@ -70,14 +68,14 @@ impl<'m, const C: usize> Density<'m, C> {
         photon_lm: f64,
         choice: Choice,
     ) -> Self {
+        let nearest = |radius_m: f64, neighbours| {
+            Reach::Nearest(radius_m, neighbours, BySurface::new(&footprints, map, COARSE * radius_m))
+        };
         let reach = match choice.bandwidth {
             Bandwidth::Radius(radius_m) => Reach::Radii(vec![radius_m]),
             Bandwidth::Progressive(radius_m) => Reach::Radii(progressive(radius_m, choice.replicates)),
-            Bandwidth::AtLeast { radius_m, neighbours } => {
-                let sorted = BySurface::new(&footprints, map, COARSE * radius_m);
-                Reach::AtLeast(radius_m, neighbours as usize, sorted)
-            }
-            Bandwidth::Nearest(k) => Reach::Nearest(k as usize, BySurface::new(&footprints, map, 0.0)),
+            Bandwidth::AtLeast { radius_m, neighbours } => nearest(radius_m, neighbours),
+            Bandwidth::Nearest(k) => nearest(0.0, k),
             Bandwidth::Automatic => {
                 let chosen = bandwidth::choose(&footprints, map, choice.kernel, choice.replicates, 1.0);
                 let bandwidth = chosen.bandwidth();
@@ -146,13 +144,14 @@ impl<'m, const C: usize> Density<'m, C> {
         let area_m2 = || self.footprints.geometry().surfaces()[at.surface.0 as usize].shape.area();
         let found = match &self.reach {
             Reach::Radii(radii) => point.sum_within(radii, into),
-            Reach::AtLeast(radius_m, least, _) if point.holds_at_least(*radius_m, *least) => {
-                point.sum_within(&[*radius_m], into)
+            &Reach::Nearest(radius_m, least, _)
+                if radius_m > 0.0 && point.holds_at_least(radius_m, least as usize) =>
+            {
+                point.sum_within(&[radius_m], into)
             }
-            Reach::AtLeast(radius_m, least, sorted) => {
-                point.sum_nearest(sorted, (*least, SECOND * radius_m), area_m2, into)
+            Reach::Nearest(radius_m, least, sorted) => {
+                point.sum_nearest(sorted, (*least as usize, SECOND * radius_m), area_m2, into)
             }
-            Reach::Nearest(k, sorted) => point.sum_nearest(sorted, (*k, 0.0), area_m2, into),
         };
         point.owe(found, into);
     }
@@ -161,8 +160,7 @@ impl<'m, const C: usize> Density<'m, C> {
     fn narrowest_m(&self) -> f64 {
         match &self.reach {
             Reach::Radii(radii) => radii.iter().copied().fold(f64::INFINITY, f64::min),
-            Reach::AtLeast(radius_m, ..) => *radius_m,
-            Reach::Nearest(..) => 0.0,
+            Reach::Nearest(radius_m, ..) => *radius_m,
         }
     }
 }

@@ -115,14 +115,7 @@ impl FaceTree {
         let node = self.summary(begin, end);
         self.nodes.push(node);
         if end - begin > LEAF {
-            let size = node.high - node.low;
-            let axis = if size.x >= size.y && size.x >= size.z {
-                0
-            } else if size.y >= size.z {
-                1
-            } else {
-                2
-            };
+            let axis = (node.high - node.low).max_position();
             let triangles = &self.triangles;
             let middle = |face: u32| triangles[face as usize].iter().map(|v| v[axis]).sum::<f64>();
             let half = (end - begin) / 2;
@@ -158,18 +151,8 @@ impl FaceTree {
             second += (square(a, b) + square(b, c) + square(c, a)) * (size / 3.0);
             spread = spread.max((self.normal(face as usize) - normal).length());
         }
-        Node {
-            low,
-            high,
-            area,
-            first,
-            second,
-            normal,
-            spread,
-            begin: begin as u32,
-            end: end as u32,
-            other: 0,
-        }
+        let (begin, end) = (begin as u32, end as u32);
+        Node { low, high, area, first, second, normal, spread, begin, end, other: 0 }
     }
 }
 

@@ -84,16 +84,10 @@ const MOST_PLACES: usize = 32;
 
 /// Places where light was gathered evenly, with what was found there. Those in use come first; the others are
 /// kept for their room.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Places<const C: usize> {
     all: Vec<Place<C>>,
     used: usize,
-}
-
-impl<const C: usize> Default for Places<C> {
-    fn default() -> Self {
-        Self { all: Vec::new(), used: 0 }
-    }
 }
 
 /// A place and what was found there for a weight of 1.

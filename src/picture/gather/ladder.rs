@@ -40,6 +40,7 @@ pub(super) struct Ladder {
 }
 
 /// What is found about one photon, by rung.
+#[derive(Default)]
 pub(super) struct Point {
     pub(super) count: [f64; RUNGS],
     pub(super) variance: [f64; RUNGS],
@@ -161,13 +162,7 @@ impl Ladder {
             let mean_t = if count > 0.0 { sum / count / (self.radii_m[i] * self.radii_m[i]) } else { 0.0 };
             count * kernel.shape(mean_t) * heights[i]
         };
-        let mut point = Point {
-            count: [0.0; RUNGS],
-            variance: [0.0; RUNGS],
-            difference: [0.0; RUNGS],
-            noise: [0.0; RUNGS],
-            density: 0.0,
-        };
+        let mut point = Point::default();
         for i in 0..RUNGS {
             let second = (i + SECOND_STEPS).min(RUNGS - 1);
             let counted: f64 = used.iter().map(|w| w[i].0).sum();

@@ -7,20 +7,11 @@ use crate::picture::photon_map::{Photon, PhotonMap, by_distance};
 
 use super::footprint::{Footprint, Footprints};
 
-/// The photons of one side of a surface.
-#[derive(Debug)]
-enum Side<const C: usize> {
-    /// All that the map has.
-    All,
-    /// A part of them, by itself.
-    Some(PhotonMap<C>),
-}
-
-/// A map's photons by surface and side (back, front). No photon is copied where all lie on one side of one
-/// surface.
+/// A map's photons by surface and side (back, front): a map for each; none for a side that has all, so that no photon
+/// is copied.
 #[derive(Debug)]
 pub(crate) struct BySurface<const C: usize> {
-    sides: Vec<[Side<C>; 2]>,
+    sides: Vec<[Option<PhotonMap<C>>; 2]>,
 }
 
 /// A photon found: squared distance (m2), the side it came from, its place in that side's map.
@@ -75,23 +66,14 @@ impl<const C: usize> BySurface<C> {
             let guessed = PhotonMap::build(photons, *map.frame(), 0.0);
             if guessed.built_for_m() < radius_m { guessed.rebuilt(radius_m) } else { guessed }
         };
-        let mut side = photons
-            .into_iter()
-            .zip(number)
-            .map(|(photons, n)| if n == total { Side::All } else { Side::Some(sorted(photons)) });
-        let mut sides = Vec::new();
-        while let (Some(back), Some(front)) = (side.next(), side.next()) {
-            sides.push([back, front]);
-        }
-        Self { sides }
+        let mut side =
+            photons.into_iter().zip(number).map(|(photons, n)| (n != total).then(|| sorted(photons)));
+        Self { sides: std::iter::from_fn(|| Some([side.next()?, side.next()?])).collect() }
     }
 
     /// The photons of a side of a surface of this map.
     fn side<'s>(&'s self, map: &'s PhotonMap<C>, surface: usize, front: bool) -> &'s PhotonMap<C> {
-        match self.sides.get(surface).map(|sides| &sides[usize::from(front)]) {
-            Some(Side::Some(own)) => own,
-            Some(Side::All) | None => map,
-        }
+        self.sides.get(surface).and_then(|sides| sides[usize::from(front)].as_ref()).unwrap_or(map)
     }
 
     /// A photon that was found on a surface of this map.

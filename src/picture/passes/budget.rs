@@ -3,14 +3,11 @@
 use crate::picture::photon_map::Photon;
 use crate::scene::camera::Camera;
 
-/// Bytes of a photon while its map is made: as it was kept, and in the map with its index.
-const fn bytes_of_photon<const C: usize>() -> u64 {
-    2 * size_of::<Photon<C>>() as u64 + 8
-}
-
 /// Most photons that the camera has memory for at a time.
 pub(crate) fn capacity<const C: usize>(camera: &Camera) -> usize {
-    usize::try_from(camera.photon_memory_bytes / bytes_of_photon::<C>()).unwrap_or(usize::MAX).max(1)
+    // While its map is made a photon takes room as it was kept, and in the map with its index.
+    let bytes_of_photon = 2 * size_of::<Photon<C>>() as u64 + 8;
+    usize::try_from(camera.photon_memory_bytes / bytes_of_photon).unwrap_or(usize::MAX).max(1)
 }
 
 /// What photons may leave above what is foretold: an eighth and some, so that few ranges are traced twice.

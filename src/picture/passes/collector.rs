@@ -10,17 +10,18 @@ use std::ops::Range;
 use std::time::Instant;
 
 use crate::error::Result;
+use crate::picture::camera::Pass;
 use crate::picture::photon_map::{Channels, Kept, Photon, PhotonMap, PhotonStore, SavedMap};
 use crate::picture::summary::{Cost, PictureSummary};
 use crate::picture::{Picture, Watch, hash_of_photons, settings_of};
 use crate::run::{Plan, Tracer};
 use crate::scene::Scene;
-use crate::scene::camera::{Camera, Method};
+use crate::scene::camera::Camera;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
 use super::budget::{Budget, capacity};
-use super::eye::{Batch, Eye, Seeing};
+use super::eye::Eye;
 
 /// Photons on their way into a picture.
 pub(crate) struct Collector<'a, const C: usize> {
@@ -88,14 +89,14 @@ impl<'a, const C: usize> Collector<'a, C> {
         carried: T,
     ) -> Result<Traced> {
         let mut all = Traced::new(self.scene);
-        let (n, from) = (self.plan.photons_per_replicate(), tracer.photons());
+        let (n, from) = (self.plan.photons_per_replicate(), tracer.photons);
         // A pass is of whole replicates or of a part of one: the camera's error comes from whole ones.
-        if tracer.replicate() > 0 && from == 0 && self.budget.foretold(n) > self.budget.room() {
+        if tracer.points.replicate > 0 && from == 0 && self.budget.foretold(n) > self.budget.room() {
             self.pass_unless_empty()?;
         }
-        while tracer.photons() < end && all.complete {
-            let to = self.budget.next_end(tracer.photons(), end);
-            if self.budget.foretold(to - tracer.photons()) > self.budget.room() {
+        while tracer.photons < end && all.complete {
+            let to = self.budget.next_end(tracer.photons, end);
+            if self.budget.foretold(to - tracer.photons) > self.budget.room() {
                 self.pass_unless_empty()?;
             }
             let before = *tracer;
@@ -132,7 +133,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<(Traced, Option<Kept<C>>)> {
         self.store.limit(most);
-        let replicate = tracer.replicate();
+        let replicate = tracer.points.replicate;
         let sink = || self.store.sink(receivers.sink(), replicate);
         let traced = tracer.trace_into(to, carried, sink, self.watch.interrupt, progress)?;
         Ok((traced, self.store.take()))
@@ -140,13 +141,13 @@ impl<'a, const C: usize> Collector<'a, C> {
 
     /// Takes the photons of a range from `before` to photon number `to` for good.
     fn accept(&mut self, kept: Kept<C>, before: &Tracer<'_>, to: u64) {
-        let replicate = before.replicate();
+        let replicate = before.points.replicate;
         for (held, kept) in self.held.iter_mut().zip(kept) {
             self.budget.held += kept.iter().map(Vec::len).sum::<usize>();
             self.budget.kept += kept.iter().map(|block| block.len() as u64).sum::<u64>();
             held.extend(kept);
         }
-        self.budget.traced += to - before.photons();
+        self.budget.traced += to - before.photons;
         if self.held_of.is_empty() {
             self.held_of.start = replicate;
         }
@@ -162,13 +163,13 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.pass_unless_empty()?;
         let nobody = Receivers::new(&self.scene.geometry, &[]);
         let mut tracer = before;
-        let mut length = to - before.photons();
+        let mut length = to - before.photons;
         if had_all_room && length > 1 {
             length = length.next_power_of_two() / 2;
         }
-        while tracer.photons() < to {
+        while tracer.photons < to {
             let from = tracer;
-            let part = to.min((from.photons() / length + 1) * length);
+            let part = to.min((from.photons / length + 1) * length);
             // What one photon leaves is kept, however much it is.
             let most = if length == 1 { usize::MAX } else { self.budget.room() };
             match self.range(&mut tracer, part, most, &nobody, carried, &|_| {})? {
@@ -206,20 +207,15 @@ impl<'a, const C: usize> Collector<'a, C> {
         let photon_lm = if last { exact_lm } else { planned_lm };
         if last && self.passes > 0 && exact_lm != planned_lm {
             // An interrupted run: earlier passes took a photon for less than it turned out to be.
-            self.eye.scale(exact_lm / planned_lm);
+            self.eye.sums.scale(exact_lm / planned_lm);
         }
         let in_pass = std::mem::take(&mut self.budget.held) as f64;
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
         let part = if self.budget.kept == 0 { 1.0 } else { in_pass / self.budget.kept as f64 };
-        let maps = self.eye.add(Batch {
-            photons: std::mem::take(&mut self.held),
-            frame: self.store.frame(),
-            photon_lm,
-            part: part * photon_lm / exact_lm,
-            replicates: std::mem::replace(&mut self.held_of, 0..0),
-            finishes: self.whole,
-            last,
-        })?;
+        let replicates = std::mem::replace(&mut self.held_of, 0..0);
+        let pass = Pass { densities: &[], replicates, finishes: self.whole, emission: last, direct: last };
+        let (held, frame) = (std::mem::take(&mut self.held), self.store.frame());
+        let maps = self.eye.add(held, frame, photon_lm, part * photon_lm / exact_lm, pass)?;
         self.open = !self.whole;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
@@ -232,7 +228,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         if self.whole || self.replicates < 2 {
             return;
         }
-        self.eye.drop_unfinished();
+        self.eye.sums.drop_unfinished();
         self.held = Kept::default();
         (self.budget.held, self.held_of) = (0, 0..0);
         self.replicates -= 1;
@@ -255,20 +251,15 @@ impl<'a, const C: usize> Collector<'a, C> {
             frame: self.store.frame(),
             photons,
         });
-        let Seeing { film, killed, unseen, bandwidths } = self.eye.finish();
-        let cost = Cost::of(&film);
+        let (film, summary) = self.eye.finish();
         let summary = PictureSummary {
-            method: Method::Map,
+            cost: Cost::of(&film),
             photons: self.budget.traced,
             replicates: self.replicates,
             photons_kept: self.budget.kept,
             passes: self.passes,
-            bandwidth: Some(bandwidths),
-            eye_paths_killed: killed,
-            splats_cut: 0,
-            pixels_unseen: unseen,
-            cost,
             time_s: self.camera_s,
+            ..summary
         };
         Ok(Picture { film, summary, photons })
     }

@@ -3,17 +3,17 @@
 //! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error
 //! comes from whole ones.
 
-use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::error::Result;
 use crate::picture::Watch;
-use crate::picture::camera::{Film, Pass, Sums, View, render};
+use crate::picture::camera::render::{Rendered, render};
+use crate::picture::camera::{Film, Pass, Sums, View};
 use crate::picture::gather::footprint::Footprints;
 use crate::picture::gather::{Choice, Density, bandwidth};
 use crate::picture::photon_map::{Frame, Kept, Photon, PhotonMap};
-use crate::picture::summary::Chosen;
+use crate::picture::summary::{Chosen, PictureSummary};
 use crate::run::Plan;
 use crate::scene::Scene;
 use crate::scene::camera::{Bandwidth, Camera};
@@ -28,43 +28,14 @@ struct Settled {
 /// Fewest neighbours in a pass: of k nearest the relative variance is 1 / (k - 2).
 const FEWEST_IN_PASS: u32 = 16;
 
-/// The photons of a pass.
-pub(crate) struct Batch<const C: usize> {
-    /// Photons that were not scattered before, and those that were.
-    pub(crate) photons: Kept<C>,
-    /// What positions are counted in.
-    pub(crate) frame: Frame,
-    /// Flux of one of them, lm: that of the whole run.
-    pub(crate) photon_lm: f64,
-    /// Which part of the run's photons this is.
-    pub(crate) part: f64,
-    /// The replicates they are of: whole ones, or a part of one.
-    pub(crate) replicates: Range<u32>,
-    /// Whether these replicates end with this pass.
-    pub(crate) finishes: bool,
-    /// Whether it is the last pass, in which light that no photon brings is seen as well.
-    pub(crate) last: bool,
-}
-
-/// What the camera saw in all.
-pub(crate) struct Seeing<const C: usize> {
-    pub(crate) film: Film<C>,
-    /// Eye paths that did not end by themselves.
-    pub(crate) killed: u64,
-    /// Pixels that an interrupt left unseen.
-    pub(crate) unseen: u64,
-    /// Bandwidths of light that no surface scattered before, and of all other.
-    pub(crate) bandwidths: [Chosen; 2],
-}
-
 /// The camera at work.
 pub(crate) struct Eye<'a, const C: usize> {
     pub(crate) view: View<'a>,
     watch: Watch<'a>,
-    killed: u64,
-    unseen: u64,
+    rendered: Rendered,
     footprints: Arc<Footprints<'a>>,
-    sums: Sums<C>,
+    /// What is seen so far.
+    pub(crate) sums: Sums<C>,
     /// Replicates of the run as planned.
     replicates: u32,
     bandwidths: [Option<Settled>; 2],
@@ -79,69 +50,51 @@ impl<'a, const C: usize> Eye<'a, C> {
         Ok(Self {
             view: View::new(scene, camera, plan.seed())?,
             watch,
-            killed: 0,
-            unseen: 0,
+            rendered: Rendered::default(),
             footprints: Arc::new(Footprints::new(&scene.geometry)),
             sums: Sums::new(camera.pixels)?,
             replicates: plan.replicates(),
-            bandwidths: [None; 2],
+            bandwidths: [asked_for(camera.bandwidth); 2],
         })
     }
 
-    /// The bandwidth for a map, `part` of the photons that there will be, which are of so many replicates;
-    /// `None` where there is nothing to choose from.
-    fn choose(&self, map: &PhotonMap<C>, part: f64, replicates: u32) -> Option<Settled> {
-        let camera = &self.view.camera;
-        let mut bandwidth = camera.bandwidth;
-        let mut chosen = Chosen { radius_m: None, neighbours: None };
-        match bandwidth {
-            Bandwidth::Automatic if map.photons().is_empty() => return None,
-            Bandwidth::Automatic => {
-                let found = bandwidth::choose(&self.footprints, map, camera.kernel, replicates, part);
-                bandwidth = found.bandwidth();
-                chosen.radius_m = Some(found.radius_m);
-                chosen.neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
-            }
-            Bandwidth::Radius(radius_m)
-            | Bandwidth::Progressive(radius_m)
-            | Bandwidth::AtLeast { radius_m, .. } => chosen.radius_m = Some(radius_m),
-            Bandwidth::Nearest(n) => chosen.neighbours = Some(f64::from(n)),
-        }
-        Some(Settled { bandwidth, chosen })
-    }
-
-    /// The radius that a map of photons is sorted for, m: that of the bandwidth if it is known.
-    fn radius_to_sort_for_m(&self, settled: Option<Settled>) -> f64 {
-        match settled.map_or(self.view.camera.bandwidth, |s| s.bandwidth) {
-            Bandwidth::Radius(radius_m)
-            | Bandwidth::Progressive(radius_m)
-            | Bandwidth::AtLeast { radius_m, .. } => radius_m,
-            // For a guess from the number of photons.
-            Bandwidth::Automatic | Bandwidth::Nearest(_) => 0.0,
-        }
-    }
-
-    /// The map of a batch's photons sorted for the bandwidth of their density, which they settle if nothing
-    /// has.
-    fn map_of(&mut self, density: usize, photons: Vec<Photon<C>>, batch: &Batch<C>) -> PhotonMap<C> {
+    /// The map of photons, `part` of those that there will be, sorted for the bandwidth of their density, which they
+    /// settle if nothing has; they are of so many replicates.
+    fn map_of(
+        &mut self,
+        density: usize,
+        photons: Vec<Photon<C>>,
+        frame: Frame,
+        part: f64,
+        replicates: u32,
+    ) -> PhotonMap<C> {
         let settled = self.bandwidths[density];
-        let radius_m = self.radius_to_sort_for_m(settled);
-        let map = PhotonMap::build(photons, batch.frame, radius_m);
-        if settled.is_some() {
+        let map = PhotonMap::build(photons, frame, settled.and_then(|s| s.chosen.radius_m).unwrap_or(0.0));
+        if settled.is_some() || map.photons().is_empty() {
             return map;
         }
-        self.bandwidths[density] = self.choose(&map, batch.part, batch.replicates.len() as u32);
-        let wanted_m = self.radius_to_sort_for_m(self.bandwidths[density]);
-        if wanted_m > 0.0 && wanted_m != radius_m { map.rebuilt(wanted_m) } else { map }
+        let found = bandwidth::choose(&self.footprints, &map, self.view.camera.kernel, replicates, part);
+        let neighbours = Some(found.mean_neighbours / part).filter(|n| n.is_finite());
+        let chosen = Chosen { radius_m: Some(found.radius_m), neighbours };
+        self.bandwidths[density] = Some(Settled { bandwidth: found.bandwidth(), chosen });
+        map.rebuilt(found.radius_m)
     }
 
-    /// Adds what is seen of a batch, and gives its photons as they were mapped.
-    pub(crate) fn add(&mut self, mut batch: Batch<C>) -> Result<[PhotonMap<C>; 2]> {
-        let [caustic, diffuse] = std::mem::take(&mut batch.photons);
-        let caustic = self.map_of(0, joined(caustic), &batch);
-        let maps = [caustic, self.map_of(1, joined(diffuse), &batch)];
+    /// Adds what is seen in a pass of these photons: of one of them the flux is that of the whole run, all are `part` of
+    /// its photons. Gives them as they were mapped.
+    pub(crate) fn add(
+        &mut self,
+        [caustic, diffuse]: Kept<C>,
+        frame: Frame,
+        photon_lm: f64,
+        part: f64,
+        pass: Pass<'_, C>,
+    ) -> Result<[PhotonMap<C>; 2]> {
+        let replicates = pass.replicates.len() as u32;
+        let caustic = self.map_of(0, joined(caustic), frame, part, replicates);
+        let maps = [caustic, self.map_of(1, joined(diffuse), frame, part, replicates)];
         // The neighbours of a pass are a part of those of the run.
-        let of_pass = |n: u32| ((f64::from(n) * batch.part + 0.5) as u32).max(FEWEST_IN_PASS.min(n));
+        let of_pass = |n: u32| ((f64::from(n) * part + 0.5) as u32).max(FEWEST_IN_PASS.min(n));
         let density = |map, settled: Settled| {
             let bandwidth = match settled.bandwidth {
                 Bandwidth::Nearest(n) => Bandwidth::Nearest(of_pass(n)),
@@ -151,42 +104,19 @@ impl<'a, const C: usize> Eye<'a, C> {
                 other => other,
             };
             let choice = Choice { bandwidth, kernel: self.view.camera.kernel, replicates: self.replicates };
-            Density::new(Arc::clone(&self.footprints), map, batch.photon_lm, choice)
+            Density::new(Arc::clone(&self.footprints), map, photon_lm, choice)
         };
         let with_photons = maps.iter().zip(self.bandwidths).filter(|(map, _)| !map.photons().is_empty());
         let densities: Vec<Density<'_, C>> =
             with_photons.filter_map(|(map, settled)| Some(density(map, settled?))).collect();
-        let pass = Pass {
-            densities: &densities,
-            replicates: batch.replicates,
-            finishes: batch.finishes,
-            emission: batch.last,
-            direct: batch.last,
-        };
-        self.look(&pass, batch.last)?;
+        self.look(&Pass { densities: &densities, ..pass })?;
         Ok(maps)
     }
 
-    /// Adds emitters and background as seen directly, by mirrors and through glass, without light on
-    /// surfaces.
-    pub(crate) fn add_emitters(&mut self) -> Result<()> {
-        self.look(&Pass::EMISSION, true)
-    }
-
-    /// Takes all photons so far for this many times their flux.
-    pub(crate) fn scale(&mut self, factor: f64) {
-        self.sums.scale(factor);
-    }
-
-    /// Takes back what is seen of a replicate that is not finished.
-    pub(crate) fn drop_unfinished(&mut self) {
-        self.sums.drop_unfinished();
-    }
-
-    /// Ctrl-C while tracing: stop tracing, render what has been traced. Ctrl-C while rendering the last pass:
-    /// stop.
-    fn look(&mut self, pass: &Pass<'_, C>, last: bool) -> Result<()> {
-        let [columns, rows] = self.sums.pixels().map(u64::from);
+    /// Adds what is seen in a pass. Ctrl-C while tracing: stop tracing, render what has been traced. Ctrl-C while rendering the last pass, which shows
+    /// emitters: stop.
+    pub(crate) fn look(&mut self, pass: &Pass<'_, C>) -> Result<()> {
+        let [columns, rows] = self.sums.pixels.map(u64::from);
         let done = AtomicU64::new(0);
         let tell = |pixels: u64| {
             let before = done.fetch_add(pixels, Ordering::Relaxed);
@@ -194,19 +124,36 @@ impl<'a, const C: usize> Eye<'a, C> {
         };
         let never = AtomicBool::new(false);
         let was_interrupted = self.watch.interrupt.load(Ordering::Relaxed);
-        let interrupt = if was_interrupted || !last { &never } else { self.watch.interrupt };
-        let rendered = render(&self.view, pass, &mut self.sums, interrupt, &tell)?;
+        let interrupt = if was_interrupted || !pass.emission { &never } else { self.watch.interrupt };
         // The eye's paths are the same in every pass.
-        self.killed = rendered.killed;
-        self.unseen = rendered.unseen;
+        self.rendered = render(&self.view, pass, &mut self.sums, interrupt, &tell)?;
         Ok(())
     }
 
-    /// The film, and what is to be said of it.
-    pub(crate) fn finish(self) -> Seeing<C> {
+    /// The film, and what the eye knows of its summary.
+    pub(crate) fn finish(self) -> (Film<C>, PictureSummary) {
         let bandwidths = self.bandwidths.map(|b| b.map_or(Chosen::default(), |settled| settled.chosen));
-        Seeing { film: self.sums.finish(), killed: self.killed, unseen: self.unseen, bandwidths }
+        let summary = PictureSummary {
+            method: self.view.camera.method,
+            bandwidth: Some(bandwidths),
+            eye_paths_killed: self.rendered.killed,
+            pixels_unseen: self.rendered.unseen,
+            ..PictureSummary::default()
+        };
+        (self.sums.finish(), summary)
     }
+}
+
+/// A bandwidth that the camera names; `None` where it is to be chosen.
+fn asked_for(bandwidth: Bandwidth) -> Option<Settled> {
+    let (radius_m, neighbours) = match bandwidth {
+        Bandwidth::Automatic => return None,
+        Bandwidth::Radius(radius_m)
+        | Bandwidth::Progressive(radius_m)
+        | Bandwidth::AtLeast { radius_m, .. } => (Some(radius_m), None),
+        Bandwidth::Nearest(n) => (None, Some(f64::from(n))),
+    };
+    Some(Settled { bandwidth, chosen: Chosen { radius_m, neighbours } })
 }
 
 /// Blocks one after another; each is dropped when it is copied.

@@ -4,16 +4,16 @@ use std::time::Instant;
 
 use crate::error::Result;
 use crate::picture::camera::splat::{self, Splat, SplatMoments};
-use crate::picture::camera::{Film, View};
+use crate::picture::camera::{Film, Pass, View};
 use crate::picture::photon_map::Channels;
 use crate::picture::summary::{Cost, PictureSummary};
 use crate::picture::{Picture, Watch};
 use crate::run::{Outcome, Plan, trace_by};
 use crate::scene::Scene;
-use crate::scene::camera::{Camera, Method};
+use crate::scene::camera::Camera;
 use crate::surface::luminance_of;
 
-use super::eye::{Eye, Seeing};
+use super::eye::Eye;
 
 /// Traces a scene and splats its photons; emitters and background are seen by eye paths.
 pub(crate) fn trace<const C: usize, T: Channels<C>>(
@@ -34,8 +34,8 @@ pub(crate) fn trace<const C: usize, T: Channels<C>>(
             let sink = || splat.sink(receivers.sink());
             let traced = tracer.trace_into(end, carried, sink, watch.interrupt, watch.photons)?;
             // What counts are whole replicates, and of the first one what is finished of it.
-            if traced.complete && (tracer.replicate() == 0 || end == plan.photons_per_replicate()) {
-                if tracer.replicate() == 0 {
+            if traced.complete && (tracer.points.replicate == 0 || end == plan.photons_per_replicate()) {
+                if tracer.points.replicate == 0 {
                     moments.restart();
                 }
                 splat.close(&mut moments, end == plan.photons_per_replicate());
@@ -46,23 +46,20 @@ pub(crate) fn trace<const C: usize, T: Channels<C>>(
         watch.interrupt,
     )?;
     let started = Instant::now();
-    eye.add_emitters()?;
+    eye.look(&Pass::EMISSION)?;
     let view = eye.view.clone();
-    let Seeing { film, killed, unseen, .. } = eye.finish();
+    let (film, summary) = eye.finish();
     let film = with_splats(film, &moments, &outcome, &view);
-    let cost = Cost::of(&film);
     let summary = PictureSummary {
-        method: Method::Splat,
+        cost: Cost::of(&film),
         photons: outcome.photons,
         replicates: outcome.replicates,
         photons_kept: joined,
         passes: 1,
         bandwidth: None,
-        eye_paths_killed: killed,
         splats_cut: splat.cut(),
-        pixels_unseen: unseen,
-        cost,
         time_s: started.elapsed().as_secs_f64(),
+        ..summary
     };
     Ok((outcome, Picture { film, summary, photons: None }))
 }

@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use crate::geometry::Geometry;
 use crate::scene::Scene;
 use crate::surface::{Grey, Material, Rgb, Throughput};
 use crate::transport::{Arrival, Sink};
@@ -62,8 +61,9 @@ pub type Kept<const C: usize> = [Vec<Vec<Photon<C>>>; 2];
 impl<const C: usize> PhotonStore<C> {
     /// An empty store for a scene.
     pub fn new(scene: &Scene) -> Self {
+        let (low, high) = scene.geometry.bounds();
         Self {
-            frame: frame_of(&scene.geometry),
+            frame: Frame::new(low, high),
             scatters: scattering_surfaces(scene),
             blocks: Default::default(),
             kept: AtomicUsize::new(0),
@@ -132,12 +132,6 @@ fn add<const C: usize>(blocks: &mut Vec<Vec<Photon<C>>>, mut photons: &[Photon<C
     }
 }
 
-/// The steps in which a scene's photons have their positions.
-pub fn frame_of(geometry: &Geometry) -> Frame {
-    let (low, high) = geometry.bounds();
-    Frame::new(low, high)
-}
-
 /// Keeps the photons of one batch that arrive on scattering surfaces, but for those that no event preceded,
 /// and adds all arrivals to a scene's receivers.
 #[derive(Debug)]
@@ -203,7 +197,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::geometry::{Rectangle, Shape, Surface, Whereabouts};
+    use crate::geometry::{Geometry, Rectangle, Shape, Surface, Whereabouts};
     use crate::tally::Receivers;
 
     /// Sheets at z = 0, which scatters, and z = 1, which does not.
@@ -213,6 +207,11 @@ mod tests {
             Surface { name: format!("at {z}"), shape }
         };
         Geometry::build(vec![sheet(0.0), sheet(1.0)]).unwrap()
+    }
+
+    fn frame_of(geometry: &Geometry) -> Frame {
+        let (low, high) = geometry.bounds();
+        Frame::new(low, high)
     }
 
     fn store(geometry: &Geometry) -> PhotonStore<1> {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::plot::page::curve_angles;
 use crate::scattering::value::value;
 use crate::scattering::{Frame, Lobe, Quantity};
 use crate::units::LUMINANCE_OF_RGB;
@@ -9,8 +10,8 @@ use crate::units::LUMINANCE_OF_RGB;
 /// Incidences that are looked for, degrees; the table's nearest are drawn.
 pub const WANTED_DEG: [f64; 4] = [0.0, 30.0, 60.0, 80.0];
 
-/// Step of a curve, degrees; the table's own angles are added.
-const STEP_DEG: f64 = 0.5;
+/// Points of a curve in a degree; the table's own angles are added.
+const PER_DEGREE: i32 = 2;
 
 /// Scattered intensity in the plane of incidence, for light from one direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,16 +40,13 @@ pub fn slices(lobe: &Lobe) -> Vec<Slice> {
     let azimuths: &[f64] = if lobe.is_isotropic() { &[0.0] } else { &[0.0, 90.0] };
     let first = lobe.phi_i_deg[0];
     let phis = nearest(&lobe.phi_i_deg, &azimuths.iter().map(|a| a + first).collect::<Vec<_>>());
-    let mut slices = Vec::new();
-    for phi in &phis {
-        slices.extend(thetas.iter().map(|theta| Slice {
-            theta_i_deg: lobe.theta_i_deg[*theta],
-            phi_i_deg: (!lobe.is_isotropic()).then(|| lobe.phi_i_deg[*phi]),
-            quantity: lobe.quantity,
-            points: in_plane(lobe, *phi, *theta),
-        }));
-    }
-    slices
+    let slice = |phi: usize, theta: usize| Slice {
+        theta_i_deg: lobe.theta_i_deg[theta],
+        phi_i_deg: (!lobe.is_isotropic()).then(|| lobe.phi_i_deg[phi]),
+        quantity: lobe.quantity,
+        points: in_plane(lobe, phi, theta),
+    };
+    phis.iter().flat_map(|phi| thetas.iter().map(move |theta| slice(*phi, *theta))).collect()
 }
 
 /// Indices of the angles nearest to the wanted ones, each once, rising.
@@ -78,12 +76,7 @@ fn in_plane(lobe: &Lobe, phi_i: usize, theta_i: usize) -> Vec<(f64, f64)> {
         Frame::Surface => 0.0,
         Frame::Specular => theta_i_deg,
     };
-    let steps = (180.0 / STEP_DEG) as i32;
-    let mut angles: Vec<f64> = (0..=steps).map(|i| f64::from(i) * STEP_DEG - 90.0).collect();
-    angles
-        .extend(lobe.polar_deg.iter().flat_map(|p| [pole_deg + p, pole_deg - p]).filter(|a| a.abs() <= 90.0));
-    angles.sort_by(f64::total_cmp);
-    angles.dedup();
+    let own = lobe.polar_deg.iter().flat_map(|p| [pole_deg + p, pole_deg - p]);
     let weights: &[f64] = if lobe.channels == 3 { &LUMINANCE_OF_RGB } else { &[1.0] };
     let intensity = |angle_deg: f64| {
         let angle = angle_deg.to_radians();
@@ -92,5 +85,5 @@ fn in_plane(lobe: &Lobe, phi_i: usize, theta_i: usize) -> Vec<(f64, f64)> {
         let f = weights.iter().enumerate().map(|(channel, weight)| weight * value(lobe, channel, wi, wo));
         f.sum::<f64>() * cosine
     };
-    angles.into_iter().map(|a| (a, intensity(a))).collect()
+    curve_angles(90, PER_DEGREE, own).into_iter().map(|a| (a, intensity(a))).collect()
 }

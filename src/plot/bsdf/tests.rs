@@ -28,10 +28,10 @@ fn lobes_point_forwards_and_to_their_side() {
         let (angle, intensity) = largest(&plot.slices[0]);
         assert!((angle - 40.0).abs() < 1e-9, "{quantity}: {angle}");
         assert!((intensity - 9.0 * 40f64.to_radians().cos()).abs() < 1e-6, "{quantity}: {intensity}");
-        let page = plot.page();
-        let [x, y] = page.place(plot.slices[0].quantity, angle, page.radius(intensity));
-        assert!(x > page.centre[0] && (y < page.centre[1]) == up, "{quantity}");
-        assert_eq!(page.full, !up);
+        let disc = plot.disc();
+        let [x, y] = disc.place(up, angle, disc.radius(intensity));
+        assert!(x > disc.centre[0] && (y < disc.centre[1]) == up, "{quantity}");
+        assert_eq!(disc.full, !up);
     }
 }
 
@@ -48,12 +48,12 @@ fn a_diffuser_draws_a_circle() {
         "t",
         None,
     );
-    let page = plot.page();
-    assert!(matches!(page.scale, Scale::Linear(outer) if outer == 0.25));
+    let disc = plot.disc();
+    assert!(matches!(disc.scale, Scale::Linear(outer) if outer == 0.25));
     for slice in &plot.slices {
         for (angle, intensity) in &slice.points {
-            let [x, y] = page.place(slice.quantity, *angle, page.radius(*intensity));
-            let from_middle = (x - page.centre[0]).hypot(y - page.centre[1] + 0.5 * RADIUS);
+            let [x, y] = disc.place(true, *angle, disc.radius(*intensity));
+            let from_middle = (x - disc.centre[0]).hypot(y - disc.centre[1] + 0.5 * RADIUS);
             // The table's chords, a degree wide, lie inside the circle.
             assert!((from_middle - 0.5 * RADIUS).abs() < 0.01, "{angle}: {from_middle}");
         }
@@ -88,11 +88,11 @@ fn four_incidences_at_most_and_a_logarithm_where_they_differ_much() {
     );
     let plot = BsdfPlot::new(&table(&(head + &blocks)), "t", None);
     assert_eq!(plot.slices.iter().map(|s| s.theta_i_deg).collect::<Vec<_>>(), WANTED_DEG);
-    let page = plot.page();
-    assert_eq!(page.scale, Scale::Logarithmic(1000.0));
-    assert!((page.radius(1000.0) - RADIUS).abs() < 1e-9 && (page.radius(10.0) - 0.6 * RADIUS).abs() < 1e-9);
-    assert_eq!((page.radius(1e-3), page.radius(0.0)), (0.0, 0.0));
-    assert_eq!(page.rings.len(), 5);
+    let disc = plot.disc();
+    assert_eq!(disc.scale, Scale::Logarithmic(1000.0));
+    assert!((disc.radius(1000.0) - RADIUS).abs() < 1e-9 && (disc.radius(10.0) - 0.6 * RADIUS).abs() < 1e-9);
+    assert_eq!((disc.radius(1e-3), disc.radius(0.0)), (0.0, 0.0));
+    assert_eq!(disc.rings.len(), 5);
 }
 
 #[test]

@@ -42,18 +42,15 @@ pub fn marker(index: usize, at: [f64; 2], hollow: bool) -> Vec<Shape> {
 
 /// Corners about the origin, of about equal area; y down.
 fn corners(index: usize) -> Vec<[f64; 2]> {
-    let regular = |n: usize, turn: f64, size: f64| -> Vec<[f64; 2]> {
-        (0..n)
-            .map(|i| turn + TAU * i as f64 / n as f64)
-            .map(|angle| [size * libm::cos(angle), size * libm::sin(angle)])
-            .collect()
+    let around = |n: usize, turn: f64, sizes: [f64; 2]| -> Vec<[f64; 2]> {
+        let corner = |i: usize| {
+            let (angle, size) = (turn + TAU * i as f64 / n as f64, sizes[i % 2]);
+            [size * libm::cos(angle), size * libm::sin(angle)]
+        };
+        (0..n).map(corner).collect()
     };
-    let star = |arms: usize, turn: f64| -> Vec<[f64; 2]> {
-        (0..2 * arms)
-            .map(|i| (turn + PI * i as f64 / arms as f64, if i % 2 == 0 { 1.35 } else { 0.55 }))
-            .map(|(angle, size)| [size * libm::cos(angle), size * libm::sin(angle)])
-            .collect()
-    };
+    let regular = |n: usize, turn: f64, size: f64| around(n, turn, [size; 2]);
+    let star = |arms: usize, turn: f64| around(2 * arms, turn, [1.35, 0.55]);
     match index % 8 {
         0 => regular(24, 0.0, 0.9),
         1 => regular(4, PI / 4.0, 1.15),

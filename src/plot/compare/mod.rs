@@ -65,16 +65,11 @@ pub fn drawing(study: &Study, table: &Table) -> Drawing {
             y += PANEL_HEIGHT + 3.0 * LINE_HEIGHT + 14.0;
         }
         let x = MARGIN + LABELS + column as f64 * (panel_width + GAP);
-        let heading = format!("{} cells", cells(*grid));
-        let heading_at = [x + 0.5 * panel_width, y + LINE_HEIGHT + 2.0];
-        shapes.push(text(
-            heading_at,
-            &heading,
-            TextStyle::new(TEXT_SIZE, ink()).anchored(Anchor::Middle).weighing(1.25),
-        ));
+        let middle = [x + 0.5 * panel_width, y + LINE_HEIGHT + 2.0];
+        let style = TextStyle::new(TEXT_SIZE, ink()).anchored(Anchor::Middle).weighing(1.25);
+        shapes.push(text(middle, &format!("{} cells", cells(*grid)), style));
         let area = [x, y + LINE_HEIGHT + 12.0, panel_width, PANEL_HEIGHT];
-        let panel = Panel { axes: &axes, area, grid: g, labelled: column == 0 };
-        panel.draw(&mut shapes, study, table);
+        Panel { axes: &axes, area, grid: g, labelled: column == 0 }.draw(&mut shapes, study, table);
     }
     y += PANEL_HEIGHT + 4.0 * LINE_HEIGHT + 16.0;
     for line in font::wrapped(&caption(study, table), TICK_SIZE, width - 2.0 * MARGIN) {
@@ -87,18 +82,11 @@ pub fn drawing(study: &Study, table: &Table) -> Drawing {
 impl Axes {
     /// Ranges that hold every point of every panel with its bar, and the reference's own error unless far below.
     fn of(study: &Study, table: &Table) -> Self {
-        let positive = |v: &f64| *v > 0.0 && v.is_finite();
         let span = |values: &mut dyn Iterator<Item = f64>| {
-            values.filter(positive).fold(None, |range: Option<[f64; 2]>, v| {
-                Some(range.map_or([v, v], |[low, high]| [low.min(v), high.max(v)]))
-            })
+            values.filter(positive).map(|v| [v, v]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
         };
-        let errors = span(
-            &mut table
-                .rows
-                .iter()
-                .flat_map(|r| [r.errors.nrms, r.errors.nrms + r.nrms_spread.unwrap_or(0.0)]),
-        );
+        let with_bar = |r: &Row| [r.errors.nrms, r.errors.nrms + r.nrms_spread.unwrap_or(0.0)];
+        let errors = span(&mut table.rows.iter().flat_map(with_bar));
         let [mut least, most] = errors.unwrap_or([1e-3, 1e-1]);
         for own in study.reference.own_nrms.iter().take(study.grids.len()).copied().filter(positive) {
             if own > least / DEEPEST_REFERENCE {
@@ -113,6 +101,10 @@ impl Axes {
             error: round_125(0.72 * least, false)..round_125(1.1 * most, true),
         }
     }
+}
+
+fn positive(value: &f64) -> bool {
+    *value > 0.0 && value.is_finite()
 }
 
 impl Panel<'_> {
@@ -130,37 +122,26 @@ impl Panel<'_> {
         self.draw_grid(shapes);
         self.draw_guides(shapes);
         self.draw_reference(shapes, study);
-        let of = |v: usize| {
-            table
-                .rows
-                .iter()
-                .filter(move |r| (r.variant, r.grid) == (v, self.grid))
-                .filter(|r| r.errors.nrms > 0.0)
-        };
+        let shown = |r: &&Row| r.grid == self.grid && r.errors.nrms > 0.0;
+        let of = |v: usize| table.rows.iter().filter(shown).filter(move |r| r.variant == v);
+        let place = |row: &Row| [self.x(row.photons as f64), self.y(row.errors.nrms)];
         for v in (0..study.variants.len()).rev() {
-            let points = of(v).map(|r| [self.x(r.photons as f64), self.y(r.errors.nrms)]);
-            shapes.push(polyline(points.collect::<Vec<_>>(), Pen::solid(2.0, colour(v))));
+            shapes.push(polyline(of(v).map(place).collect::<Vec<_>>(), Pen::solid(2.0, colour(v))));
         }
-        for v in (0..study.variants.len()).rev() {
-            for row in of(v) {
-                self.draw_bar(shapes, row);
-                let at = [self.x(row.photons as f64), self.y(row.errors.nrms)];
-                shapes.extend(marker(v, at, row.limited_by_reference));
-            }
+        for row in (0..study.variants.len()).rev().flat_map(of) {
+            self.draw_bar(shapes, row);
+            shapes.extend(marker(row.variant, place(row), row.limited_by_reference));
         }
     }
 
     fn draw_grid(&self, shapes: &mut Vec<Shape>) {
         let [left, top, width, height] = self.area;
+        let (right, foot) = (left + width, top + height);
         let style = TextStyle::new(TICK_SIZE, ink());
-        let percent = 100.0 * self.axes.error.start..100.0 * self.axes.error.end;
-        for tick in log_ticks(percent.start, percent.end) {
+        for tick in log_ticks(100.0 * self.axes.error.start, 100.0 * self.axes.error.end) {
             let y = self.y(0.01 * tick.value);
-            let decade = is_power_of_ten(tick.value);
-            shapes.push(polyline(
-                [[left, y], [left + width, y]],
-                Pen::solid(1.0, Colour::grey(if decade { 196 } else { 226 })),
-            ));
+            let pen = hairline(if is_power_of_ten(tick.value) { 196 } else { 226 });
+            shapes.push(polyline([[left, y], [right, y]], pen));
             if self.labelled {
                 let label = format!("{} %", tick.label);
                 shapes.push(text([left - 7.0, y + 4.5], &label, style.anchored(Anchor::End)));
@@ -168,26 +149,22 @@ impl Panel<'_> {
         }
         for photons in between_powers(&self.axes.photons) {
             let x = self.x(photons);
-            shapes.push(polyline(
-                [[x, top + height - 5.0], [x, top + height]],
-                Pen::solid(1.0, Colour::grey(130)),
-            ));
+            shapes.push(polyline([[x, foot - 5.0], [x, foot]], hairline(130)));
         }
         let mut free_from = f64::NEG_INFINITY;
         for (photons, label) in photon_ticks(&self.axes.photons) {
             let x = self.x(photons);
-            shapes.push(polyline([[x, top], [x, top + height]], Pen::solid(1.0, Colour::grey(212))));
+            shapes.push(polyline([[x, top], [x, foot]], hairline(212)));
             let half = 0.5 * font::width_px(&label, TICK_SIZE, true);
             if x - half > free_from {
-                shapes.push(text([x, top + height + 18.0], &label, style.anchored(Anchor::Middle)));
+                shapes.push(text([x, foot + 18.0], &label, style.anchored(Anchor::Middle)));
                 free_from = x + half + 8.0;
             }
         }
-        let title_at = [left + 0.5 * width, top + height + 18.0 + LINE_HEIGHT];
+        let title_at = [left + 0.5 * width, foot + 18.0 + LINE_HEIGHT];
         shapes.push(text(title_at, "photons N", style.anchored(Anchor::Middle)));
-        let (right, foot) = (left + width, top + height);
         let frame = [[left, top], [right, top], [right, foot], [left, foot], [left, top]];
-        shapes.push(polyline(frame, Pen::solid(1.0, Colour::grey(130))));
+        shapes.push(polyline(frame, hairline(130)));
     }
 
     /// Two slopes from one point in the upper right corner, which errors that fall leave free.
@@ -210,28 +187,20 @@ impl Panel<'_> {
     }
 
     fn draw_reference(&self, shapes: &mut Vec<Shape>, study: &Study) {
-        let own =
-            study.reference.own_nrms.get(self.grid).copied().filter(|own| *own > 0.0 && own.is_finite());
+        let own = study.reference.own_nrms.get(self.grid).copied().filter(positive);
         let Some(own) = own else { return };
         let [left, top, width, height] = self.area;
-        let label = format!("reference {} %", three_digits(100.0 * own));
         let grey = Colour::grey(70);
-        let style = TextStyle::new(TICK_SIZE, grey);
         let shown = own >= self.axes.error.start;
         let y = if shown { self.y(own) } else { top + height };
         if shown {
-            shapes.push(polyline(
-                [[left, y], [left + width, y]],
-                Pen { dash_px: Some([7.0, 5.0]), ..Pen::solid(1.5, grey) },
-            ));
+            let dashed = Pen { dash_px: Some([7.0, 5.0]), ..Pen::solid(1.5, grey) };
+            shapes.push(polyline([[left, y], [left + width, y]], dashed));
         }
-        let below = shown && y + 19.0 < top + height;
-        let (label, baseline) = if below {
-            (label, y + 15.0)
-        } else {
-            (format!("{label}{}", if shown { "" } else { ", below" }), y - 6.0)
-        };
-        shapes.push(text([left + 6.0, baseline], &label, style));
+        let off_scale = if shown { "" } else { ", below" };
+        let label = format!("reference {} %{off_scale}", three_digits(100.0 * own));
+        let baseline = if shown && y + 19.0 < top + height { y + 15.0 } else { y - 6.0 };
+        shapes.push(text([left + 6.0, baseline], &label, TextStyle::new(TICK_SIZE, grey)));
     }
 
     /// From nRMS less its spread to nRMS plus it.
@@ -245,6 +214,10 @@ impl Panel<'_> {
             shapes.push(polyline([[x - 4.0, y], [x + 4.0, y]], pen));
         }
     }
+}
+
+fn hairline(grey: u8) -> Pen {
+    Pen::solid(1.0, Colour::grey(grey))
 }
 
 /// Line, marker and name of every variant, as many in a row as fit.
@@ -274,11 +247,8 @@ fn caption(study: &Study, table: &Table) -> String {
     } else {
         "One seed: no spread is known.".to_owned()
     };
-    let limited = if table.rows.iter().any(|r| r.limited_by_reference) {
-        format!(" Hollow markers: less than {REFERENCE_MARGIN} x that, limited by the reference.")
-    } else {
-        String::new()
-    };
+    let hollow = format!(" Hollow markers: less than {REFERENCE_MARGIN} x that, limited by the reference.");
+    let limited = if table.rows.iter().any(|r| r.limited_by_reference) { &hollow } else { "" };
     format!(
         "nRMS in % of the mean illuminance. {bars} Dashed: the reference's own error.{limited} Dotted: slopes of N^(-1/2) \
          and N^(-3/4)."
@@ -308,12 +278,9 @@ fn is_power_of_ten(value: f64) -> bool {
 
 /// 20k, 5M, 1G.
 fn short(value: f64) -> String {
-    for (unit, name) in [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")] {
-        if value >= unit {
-            return format!("{}{name}", value / unit);
-        }
-    }
-    format!("{value}")
+    let units = [(1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")];
+    let (unit, name) = units.into_iter().find(|(unit, _)| value >= *unit).unwrap_or((1.0, ""));
+    format!("{}{name}", value / unit)
 }
 
 /// Place on a logarithmic range, 0 at its start and 1 at its end.

@@ -1,9 +1,6 @@
 //! A map of illuminance (or luminance) as a picture: false colours with a scale, axes in metres, isolux lines, the numbers a
 //! lighting engineer asks for first.
 
-use std::path::Path;
-
-use crate::error::Result;
 use crate::report::colour::Colour;
 use crate::report::colour::map::{colour, lightness, value_colour};
 use crate::report::colour::scale::{Axis, Tick, linear_ticks};
@@ -91,28 +88,7 @@ struct Layout {
 impl FalseColour<'_> {
     /// Draws the picture.
     pub fn render(&self) -> Canvas {
-        match self.checked() {
-            Some(cells) => self.render_cells(self.values, cells),
-            None => self.render_cells(&[f64::NAN], [1, 1]),
-        }
-    }
-
-    /// Draws the picture into a PNG file.
-    ///
-    /// # Errors
-    /// [`crate::error::Kind::Io`] with the path.
-    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<()> {
-        self.render().write_png(path)
-    }
-
-    fn checked(&self) -> Option<[usize; 2]> {
-        let fits = self.width > 0
-            && self.height > 0
-            && self.width.checked_mul(self.height) == Some(self.values.len());
-        fits.then_some([self.width, self.height])
-    }
-
-    fn render_cells(&self, values: &[f64], cells: [usize; 2]) -> Canvas {
+        let (values, cells) = self.map();
         let axis = fit_map(values, cells);
         let display = display_size(cells, self.size_m);
         let lines = if self.isolux { isolux(values, cells, display, &axis) } else { Isolux::default() };
@@ -129,7 +105,10 @@ impl FalseColour<'_> {
 
         let mut canvas = Canvas::new(layout.size[0], layout.size[1], Colour::WHITE);
         self.draw_title(&mut canvas);
-        draw_map(&mut canvas, values, cells, &layout, &axis);
+        let [left, top, width, height] = layout.map;
+        for (i, &value) in area_average(values, cells, [width, height]).iter().enumerate() {
+            canvas.set_pixel(left + i % width, top + i / width, value_colour(value, &axis));
+        }
         draw_lines(&mut canvas, &layout, &axis, &lines);
         self.draw_axes(&mut canvas, &layout);
         draw_bar(&mut canvas, &layout, &axis, &labels, self.quantity);
@@ -138,6 +117,15 @@ impl FalseColour<'_> {
             canvas.text([MARGIN as f64, y as f64], line, &TextStyle::new(TEXT_SIZE, ink()));
         }
         canvas
+    }
+
+    /// Values and sides; one cell without a value for a map that is none.
+    fn map(&self) -> (&[f64], [usize; 2]) {
+        let count = self.width.checked_mul(self.height).filter(|n| *n > 0);
+        if count == Some(self.values.len()) {
+            return (self.values, [self.width, self.height]);
+        }
+        (&[f64::NAN], [1, 1])
     }
 
     fn layout(&self, display: [usize; 2], labels: &[(f64, String)]) -> Layout {
@@ -204,7 +192,7 @@ impl FalseColour<'_> {
         let name = TextStyle::new(TEXT_SIZE, ink()).anchored(Anchor::Middle);
         canvas.text([x + 0.5 * width, y + height + TICK_LENGTH + 33.0], &format!("u{unit}"), &name);
         let beside = [MARGIN as f64 + 10.0, y + 0.5 * height];
-        canvas.text_rotated(beside, -std::f64::consts::FRAC_PI_2, &format!("v{unit}"), &name);
+        canvas.text_rotated(beside, -std::f64::consts::FRAC_PI_2, &format!("v{unit}"), &name, 0.0);
     }
 
     fn footer_text(&self, values: &[f64], lines: &Isolux) -> Vec<String> {
@@ -214,11 +202,9 @@ impl FalseColour<'_> {
             text.push(format!("grey: no value ({empty} of {} cells)", values.len()));
         }
         if lines.smoothing > 0.0 {
-            let [u, v] = self.sides();
-            let width = if valid_size(self.size_m).is_some() {
-                format!("{} mm", three_digits(1e3 * lines.smoothing * u.max(v)))
-            } else {
-                format!("{} % of the side", three_digits(100.0 * lines.smoothing))
+            let width = match valid_size(self.size_m) {
+                Some([u, v]) => format!("{} mm", three_digits(1e3 * lines.smoothing * u.max(v))),
+                None => format!("{} % of the side", three_digits(100.0 * lines.smoothing)),
             };
             text.push(format!("isolux lines: of the map smoothed by a Gaussian, standard deviation {width}"));
         }
@@ -231,9 +217,6 @@ impl FalseColour<'_> {
 /// averages over larger areas.
 fn fit_map(values: &[f64], cells: [usize; 2]) -> Axis {
     let coarse = cells.map(|n| n.min(TYPICAL_CELLS));
-    if coarse == cells {
-        return Axis::fit(values);
-    }
     Axis::fit_with_typical(values, &area_average(values, cells, coarse))
 }
 
@@ -280,14 +263,6 @@ fn valid_size(size_m: Option<[f64; 2]>) -> Option<[f64; 2]> {
     size_m.filter(|size| size.iter().all(|s| s.is_finite() && *s > 0.0) && (size[0] / size[1]).is_normal())
 }
 
-fn draw_map(canvas: &mut Canvas, values: &[f64], cells: [usize; 2], layout: &Layout, axis: &Axis) {
-    let [left, top, width, height] = layout.map;
-    let shown = area_average(values, cells, [width, height]);
-    for (i, &value) in shown.iter().enumerate() {
-        canvas.set_pixel(left + i % width, top + i / width, value_colour(value, axis));
-    }
-}
-
 fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux) {
     let [left, top, width, height] = layout.map;
     let shift = |p: &[f64; 2]| [p[0] + left as f64, p[1] + top as f64];
@@ -307,9 +282,9 @@ fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux
             let centre = shift(&label.centre);
             let at = [centre[0] - drop * libm::sin(label.angle), centre[1] + drop * libm::cos(label.angle)];
             let style = TextStyle::new(LABEL_SIZE_PX, colour(place)).anchored(Anchor::Middle);
-            canvas.text_halo(at, label.angle, &line.tick.label, &style, 1.8);
+            canvas.text_rotated(at, label.angle, &line.tick.label, &style, 1.8);
             let style = TextStyle { colour: line_colour(place), ..style };
-            canvas.text_rotated(at, label.angle, &line.tick.label, &style);
+            canvas.text_rotated(at, label.angle, &line.tick.label, &style, 0.0);
         }
     });
 }
@@ -321,15 +296,13 @@ fn line_colour(place: f64) -> Colour {
 
 /// Place from foot (0) to top (1) and text of the marks of the colour scale, foot first.
 fn bar_labels(axis: &Axis) -> Vec<(f64, String)> {
-    let mut labels: Vec<(f64, String)> =
-        axis.ticks.iter().map(|t| (axis.place(t.value), t.label.clone())).collect();
-    if let Some(first) = labels.first_mut().filter(|_| axis.clipped_below) {
-        first.1 = format!("< {}", first.1);
-    }
-    if let Some(last) = labels.last_mut().filter(|_| axis.clipped_above) {
-        last.1 = format!("> {}", last.1);
-    }
-    labels
+    let last = axis.ticks.len().saturating_sub(1);
+    let label = |(i, tick): (usize, &Tick)| {
+        let below = if i == 0 && axis.clipped_below { "< " } else { "" };
+        let above = if i == last && axis.clipped_above { "> " } else { "" };
+        (axis.place(tick.value), format!("{above}{below}{}", tick.label))
+    };
+    axis.ticks.iter().enumerate().map(label).collect()
 }
 
 fn draw_bar(canvas: &mut Canvas, layout: &Layout, axis: &Axis, labels: &[(f64, String)], quantity: Quantity) {

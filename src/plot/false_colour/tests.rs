@@ -26,10 +26,7 @@ struct Drawn {
 
 impl Drawn {
     fn new(picture: &FalseColour<'_>) -> Self {
-        let (values, cells) = match picture.checked() {
-            Some(cells) => (picture.values, cells),
-            None => (&[f64::NAN][..], [1, 1]),
-        };
+        let (values, cells) = picture.map();
         let labels = bar_labels(&fit_map(values, cells));
         let layout = picture.layout(display_size(cells, picture.size_m), &labels);
         let canvas = picture.render();
@@ -245,7 +242,7 @@ fn the_png_holds_the_picture_and_is_the_same_every_time() {
     let map = FalseColour { isolux: true, size_m: Some([1.0, 0.8]), ..picture(&values, 100, 80) };
     let paths = [directory.path().join("a.png"), directory.path().join("b.png")];
     for path in &paths {
-        map.write_png(path).unwrap();
+        map.render().write_png(path).unwrap();
     }
     assert!(std::fs::read(&paths[0]).unwrap() == std::fs::read(&paths[1]).unwrap());
     let decoded = image::open(&paths[0]).unwrap().into_rgb8();

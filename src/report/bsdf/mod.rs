@@ -116,18 +116,13 @@ impl BsdfSummary {
     /// The record of a table.
     pub fn new(table: &ScatterTable, file: &str, format: &'static str) -> Self {
         let lobes: Vec<LobeSummary> = table.lobes.iter().map(LobeSummary::new).collect();
-        let either = |lobe: &Lobe| lobe.side == LobeSide::Both;
-        let sides: &[(&'static str, bool)] = if table.lobes.iter().all(either) {
-            &[("both", true)]
-        } else {
-            &[("front", true), ("back", false)]
-        };
-        let energy = sides.iter().filter_map(|(side, front)| energy(table, &lobes, side, *front));
+        let sides: &[&str] =
+            if lobes.iter().all(|l| l.side == "both") { &["both"] } else { &["front", "back"] };
         Self {
             file: file.into(),
             name: table.name.clone(),
             format,
-            energy: energy.collect(),
+            energy: sides.iter().filter_map(|side| energy(&lobes, side)).collect(),
             reciprocity: reciprocity::all(table).into_iter().map(reciprocity_summary).collect(),
             warnings: table.warnings.iter().map(ToString::to_string).collect(),
             lobes,
@@ -137,19 +132,18 @@ impl BsdfSummary {
 
 impl LobeSummary {
     fn new(lobe: &Lobe) -> Self {
-        let mut incidences = Vec::with_capacity(lobe.phi_i_deg.len() * lobe.theta_i_deg.len());
-        for (p, phi_i_deg) in lobe.phi_i_deg.iter().enumerate() {
-            for (t, theta_i_deg) in lobe.theta_i_deg.iter().enumerate() {
-                let rgb = (lobe.channels == 3).then(|| [0, 1, 2].map(|c| slice_albedo(lobe, c, p, t)));
-                incidences.push(IncidenceSummary {
-                    theta_i_deg: *theta_i_deg,
-                    phi_i_deg: *phi_i_deg,
-                    albedo: rgb.map_or_else(|| slice_albedo(lobe, 0, p, t), luminance),
-                    albedo_rgb: rgb,
-                    tis_declared: lobe.declared(p, t),
-                });
+        let incidence = |p: usize, t: usize| {
+            let rgb = (lobe.channels == 3).then(|| [0, 1, 2].map(|c| slice_albedo(lobe, c, p, t)));
+            IncidenceSummary {
+                theta_i_deg: lobe.theta_i_deg[t],
+                phi_i_deg: lobe.phi_i_deg[p],
+                albedo: rgb.map_or_else(|| slice_albedo(lobe, 0, p, t), luminance),
+                albedo_rgb: rgb,
+                tis_declared: lobe.declared(p, t),
             }
-        }
+        };
+        let thetas = lobe.theta_i_deg.len();
+        let incidences = (0..lobe.phi_i_deg.len() * thetas).map(|i| incidence(i / thetas, i % thetas));
         Self {
             quantity: quantity_word(lobe.quantity),
             side: match lobe.side {
@@ -170,7 +164,7 @@ impl LobeSummary {
             polar_last_deg: lobe.polar_deg.last().copied().unwrap_or_default(),
             azimuth_angles: lobe.azimuth_deg.len(),
             max_per_sr: lobe.values.iter().copied().fold(0.0, f32::max).into(),
-            incidences,
+            incidences: incidences.collect(),
         }
     }
 
@@ -192,19 +186,8 @@ impl LobeSummary {
 }
 
 /// The largest albedo for light from one side: mixtures are linear, so the tables' own angles are enough.
-fn energy(
-    table: &ScatterTable,
-    summaries: &[LobeSummary],
-    side: &'static str,
-    front: bool,
-) -> Option<EnergySummary> {
-    let concerned = |lobe: &Lobe| match lobe.side {
-        LobeSide::Both => true,
-        LobeSide::Front => front,
-        LobeSide::Back => !front,
-    };
-    let lobes: Vec<&LobeSummary> =
-        table.lobes.iter().zip(summaries).filter(|(lobe, _)| concerned(lobe)).map(|(_, s)| s).collect();
+fn energy(lobes: &[LobeSummary], side: &'static str) -> Option<EnergySummary> {
+    let lobes: Vec<&LobeSummary> = lobes.iter().filter(|l| l.side == "both" || l.side == side).collect();
     let at = |theta_i_deg: f64, phi_i_deg: f64, channel: usize| {
         let max_albedo = lobes.iter().map(|l| l.albedo(channel, theta_i_deg, phi_i_deg)).sum();
         EnergySummary { side, max_albedo, theta_i_deg, phi_i_deg, conserved: max_albedo <= ONE }

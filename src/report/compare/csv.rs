@@ -1,5 +1,6 @@
 //! compare.csv: one row per variant, number of photons and grid.
 
+use crate::lab::study::norms::Errors;
 use crate::lab::study::results::Study;
 use crate::lab::study::table::Table;
 use crate::report::numbers::bare;
@@ -16,22 +17,19 @@ pub fn csv(study: &Study, table: &Table) -> String {
     let mut out = format!("{HEADER}\n");
     for row in &table.rows {
         let rate = table.trends[row.variant][row.grid].law.map(|law| law.rate);
-        let fields = [
-            quoted(&study.variants[row.variant].name),
-            row.photons.to_string(),
-            study.grids[row.grid].to_string(),
-            bare(Some(row.errors.relative_rms)),
-            bare(Some(row.errors.nrms)),
-            bare(Some(row.errors.relative_l1)),
-            bare(row.nrms_spread),
-            bare(table.photons_per_cpu_s[row.variant]),
-            bare(Some(row.coordinates)),
-            bare(rate),
-            bare(row.ratio_equal_n),
-            bare(row.ratio_equal_time.map(|ratio| ratio.value)),
-        ];
-        out.push_str(&fields.join(","));
-        out.push('\n');
+        let name = quoted(&study.variants[row.variant].name);
+        let (photons, cells) = (row.photons, study.grids[row.grid]);
+        let Errors { relative_rms, nrms, relative_l1 } = row.errors;
+        let numbers = [relative_rms, nrms, relative_l1].map(Some).into_iter().chain([
+            row.nrms_spread,
+            table.photons_per_cpu_s[row.variant],
+            Some(row.coordinates),
+            rate,
+            row.ratio_equal_n,
+            row.ratio_equal_time.map(|ratio| ratio.value),
+        ]);
+        let numbers: Vec<String> = numbers.map(bare).collect();
+        out += &format!("{name},{photons},{cells},{}\n", numbers.join(","));
     }
     out
 }

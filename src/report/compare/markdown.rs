@@ -1,11 +1,26 @@
 //! compare.md: the study with everything needed to judge and to repeat it.
 
-use crate::lab::study::results::Study;
-use crate::lab::study::table::{TARGET_ERROR, Table};
-use crate::report::numbers::{grouped, list, three_digits};
+use crate::lab::study::results::{Study, VariantResult};
+use crate::lab::study::table::Table;
+use crate::report::numbers::{grouped, list, piped, printable, three_digits};
 
-use super::numbers::{DAGGERS, UNKNOWN, known};
+use super::numbers::{Column, DAGGERS, UNKNOWN, filled, known, of_paper};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};
+
+/// What is shown of a variant at one N on one grid.
+const ERRORS: [Column; 11] = [
+    ("variant", |l| code(&l.variant.name)),
+    ("nRMS, %", |l| DAGGERS.error(l.row)),
+    ("of mc", |l| known(l.row.ratio_equal_n.map(|r| 1.0 / r))),
+    ("paper: of mc", |l| of_paper(l.paper.map(|r| 1.0 / r))),
+    ("relative RMS, %", |l| three_digits(100.0 * l.row.errors.relative_rms)),
+    ("relative L1, %", |l| three_digits(100.0 * l.row.errors.relative_l1)),
+    ("rate", |l| DAGGERS.rate(l.trend)),
+    ("mc's error over its own, equal N", |l| known(l.row.ratio_equal_n)),
+    ("paper's", |l| of_paper(l.paper)),
+    ("the same, equal time", |l| DAGGERS.prediction(l.row.ratio_equal_time)),
+    ("CPU s to 1 %", |l| DAGGERS.prediction(l.trend.time_to_target)),
+];
 
 /// The study as a Markdown document.
 pub fn markdown(study: &Study, table: &Table) -> String {
@@ -14,11 +29,12 @@ pub fn markdown(study: &Study, table: &Table) -> String {
         None => out.push_str("\nNo run is finished.\n"),
         Some(photons) => {
             for (g, grid) in study.grids.iter().enumerate() {
-                out.push_str(&format!("\n## {} photons on {} cells\n\n", grouped(photons), cells(*grid)));
-                out.push_str(&errors_at(study, table, photons, g));
+                let (head, body) = filled(&ERRORS, study, table, photons, g);
+                out += &format!("\n## {} photons on {} cells\n\n", grouped(photons), cells(*grid));
+                out += &pipes(&head, &body);
             }
-            out.push_str("\n## Coordinates and speed\n\n");
-            out.push_str(&costs(study, table, photons));
+            out += "\n## Coordinates and speed\n\n";
+            out += &costs(study, table, photons);
         }
     }
     for (g, grid) in study.grids.iter().enumerate() {
@@ -31,67 +47,25 @@ pub fn markdown(study: &Study, table: &Table) -> String {
 
 /// What was done, by which command, against which reference.
 fn opening(study: &Study) -> String {
-    let names: Vec<String> = study.receivers.iter().map(|r| plain(r)).collect();
-    let ladder: Vec<String> = study.ladder.iter().map(|&n| photons_in_short(n)).collect();
+    let (scene, command, hash) =
+        (plain(&study.scene_name), printable(&study.command), one_line(&study.scene_sha256));
+    let receivers = list(study.receivers.iter().map(|r| plain(r)));
+    let grids = list(study.grids.iter().map(u32::to_string));
+    let (asked, ladder) = (grouped(study.asked_photons), list(study.ladder.iter().map(photons_in_short)));
+    let (seeds, threads, version) = (seeds(study), study.threads, plain(&study.caustix_version));
+    let (reference, own_errors) = (plain(&reference(study)), own_errors(study));
     let mut out = format!(
-        "# Algorithm variants on {}\n\n    {}\n\n",
-        plain(&study.scene_name),
-        unbroken(&study.command)
+        "# Algorithm variants on {scene}\n\n    {command}\n\n\
+         - Scene: {scene}, SHA-256 `{hash}`; receivers: {receivers}; cells along a side: {grids}\n\
+         - Photons: N = {asked} asked for; measured at {ladder}; {seeds}, one set of N points each; {threads} threads; \
+         caustix {version}\n\
+         - Reference: {reference}\n\
+         - The reference's own nRMS, from its replicates: {own_errors}\n\n"
     );
-    out.push_str(&format!(
-        "- Scene: {}, SHA-256 `{}`; receivers: {}; cells along a side: {}\n",
-        plain(&study.scene_name),
-        one_line(&study.scene_sha256),
-        list(&names),
-        list(&study.grids.iter().map(u32::to_string).collect::<Vec<_>>()),
-    ));
-    out.push_str(&format!(
-        "- Photons: N = {} asked for; measured at {}; {}, one set of N points each; {} threads; caustix {}\n",
-        grouped(study.asked_photons),
-        list(&ladder),
-        seeds(study),
-        study.threads,
-        plain(&study.caustix_version)
-    ));
-    out.push_str(&format!("- Reference: {}\n", plain(&reference(study))));
-    out.push_str(&format!("- The reference's own nRMS, from its replicates: {}\n\n", own_errors(study)));
     for variant in &study.variants {
-        out.push_str(&format!("- `{}`: {}\n", one_line(&variant.name), plain(&variant.description)));
+        out += &format!("- {}: {}\n", code(&variant.name), plain(&variant.description));
     }
     out
-}
-
-/// The errors of every variant at one N on one grid.
-fn errors_at(study: &Study, table: &Table, photons: u64, grid: usize) -> String {
-    let paper = study.variants.iter().any(|v| study.paper_ratio(&v.name).is_some());
-    let mut head = vec!["variant", "nRMS, %", "of mc"];
-    head.extend(paper.then_some("paper: of mc"));
-    head.extend(["relative RMS, %", "relative L1, %", "rate", "mc's error over its own, equal N"]);
-    head.extend(paper.then_some("paper's"));
-    let time_to = format!("CPU s to {} %", 100.0 * TARGET_ERROR);
-    head.extend(["the same, equal time", time_to.as_str()]);
-    let mut body = Vec::new();
-    for (v, variant) in study.variants.iter().enumerate() {
-        let Some(row) = table.row(v, photons, grid) else { continue };
-        let trend = &table.trends[v][grid];
-        let of_paper = study.paper_ratio(&variant.name);
-        let two = |value: Option<f64>| value.map_or(UNKNOWN.to_owned(), |value| format!("{value:.2}"));
-        let mut line = vec![
-            format!("`{}`", one_line(&variant.name)),
-            DAGGERS.error(row),
-            known(row.ratio_equal_n.map(|r| 1.0 / r)),
-        ];
-        line.extend(paper.then(|| two(of_paper.map(|r| 1.0 / r))));
-        line.push(three_digits(100.0 * row.errors.relative_rms));
-        line.push(three_digits(100.0 * row.errors.relative_l1));
-        line.push(DAGGERS.rate(trend.law.as_ref(), trend.limited_by_reference));
-        line.push(known(row.ratio_equal_n));
-        line.extend(paper.then(|| two(of_paper)));
-        line.push(DAGGERS.prediction(row.ratio_equal_time));
-        line.push(DAGGERS.prediction(trend.time_to_target));
-        body.push(line);
-    }
-    pipes(&head, &body)
 }
 
 /// What a photon costs: coordinates beside three other counts of them, and time.
@@ -105,47 +79,39 @@ fn costs(study: &Study, table: &Table, photons: u64) -> String {
         "eq. (6)",
         "Mphotons per CPU s",
     ];
-    let mut body = Vec::new();
-    for (v, variant) in study.variants.iter().enumerate() {
+    let of_variant = |(v, variant): (usize, &VariantResult)| {
+        let four = |count: Option<f64>| count.map_or(UNKNOWN.to_owned(), |c| format!("{c:.4}"));
         let measured = table.rows.iter().find(|r| (r.variant, r.photons) == (v, photons));
         let most = variant.runs.iter().map(|run| run.coordinates_max).max();
-        let account = |of: fn(&crate::lab::study::results::Account) -> f64| {
-            variant.account.as_ref().map(of).map_or(UNKNOWN.to_owned(), |c| format!("{c:.4}"))
-        };
-        body.push(vec![
-            format!("`{}`", one_line(&variant.name)),
-            measured.map_or(UNKNOWN.to_owned(), |r| format!("{:.4}", r.coordinates)),
+        let account = variant.account.as_ref();
+        vec![
+            code(&variant.name),
+            four(measured.map(|r| r.coordinates)),
             most.map_or(UNKNOWN.to_owned(), |most| most.to_string()),
-            account(|a| a.by_event),
-            account(|a| a.equation_4),
-            account(|a| a.equation_6),
+            four(account.map(|a| a.by_event)),
+            four(account.map(|a| a.equation_4)),
+            four(account.map(|a| a.equation_6)),
             known(table.photons_per_cpu_s[v].map(|s| s / 1e6)),
-        ]);
-    }
-    let mut out = pipes(&head, &body);
-    out.push_str(
-        "\nA coordinate is counted when it is drawn, and the event account adds up what every event draws; an event with one \
-         possible outcome draws none. (4), D = 3 + B_s + 3 B_d + C, and (6), D' <= 2 + 2 B_d + C, are the paper's counts for \
-         B_s specular and B_d other scatterings, C = 1 if the photon escapes and 2 if it is absorbed: (4) without, (6) with \
-         renormalisation. Rejection draws as often as it must, which neither of them counts.\n",
-    );
-    out
+        ]
+    };
+    let body: Vec<Vec<String>> = study.variants.iter().enumerate().map(of_variant).collect();
+    pipes(&head, &body)
+        + "\nA coordinate is counted when it is drawn, and the event account adds up what every event draws; an event with \
+           one possible outcome draws none. (4), D = 3 + B_s + 3 B_d + C, and (6), D' <= 2 + 2 B_d + C, are the paper's \
+           counts for B_s specular and B_d other scatterings, C = 1 if the photon escapes and 2 if it is absorbed: (4) \
+           without, (6) with renormalisation. Rejection draws as often as it must, which neither of them counts.\n"
 }
 
 /// nRMS of every variant, a line an N.
 fn errors_against_photons(study: &Study, table: &Table, grid: usize) -> String {
-    let names: Vec<String> = study.variants.iter().map(|v| format!("`{}`", one_line(&v.name))).collect();
+    let names: Vec<String> = study.variants.iter().map(|v| code(&v.name)).collect();
     let head: Vec<&str> = ["N"].into_iter().chain(names.iter().map(String::as_str)).collect();
-    let body: Vec<Vec<String>> = table
-        .ladder()
-        .into_iter()
-        .map(|photons| {
-            let errors = (0..names.len())
-                .map(|v| table.row(v, photons, grid).map_or(UNKNOWN.to_owned(), |row| DAGGERS.error(row)));
-            [photons_in_short(photons)].into_iter().chain(errors).collect()
-        })
-        .collect();
-    pipes(&head, &body)
+    let line = |photons: u64| {
+        let row = |v: usize| table.row(v, photons, grid);
+        let errors = (0..names.len()).map(|v| row(v).map_or(UNKNOWN.to_owned(), |row| DAGGERS.error(row)));
+        [photons_in_short(&photons)].into_iter().chain(errors).collect()
+    };
+    pipes(&head, &table.ladder().into_iter().map(line).collect::<Vec<_>>())
 }
 
 /// Warnings, and what the columns and marks mean.
@@ -169,7 +135,7 @@ fn closing(study: &Study, table: &Table) -> String {
          - Equal time: nRMS of `mc` after the CPU time of the variant's run, by the fitted law of `mc`, over the variant's. \
          Speed and time are CPU time over all threads, from runs with the largest N.\n",
     );
-    if study.variants.iter().any(|v| study.paper_ratio(&v.name).is_some()) {
+    if study.is_of_paper() {
         out.push_str(
             "- The paper's ratios are for 4 456 448 photons, its own scene and cells, and a norm that it does not state.\n",
         );
@@ -182,16 +148,12 @@ fn closing(study: &Study, table: &Table) -> String {
 
 /// A table: the first column to the left, numbers to the right.
 fn pipes(head: &[&str], body: &[Vec<String>]) -> String {
-    let rule: Vec<&str> = (0..head.len()).map(|c| if c == 0 { "---" } else { "---:" }).collect();
-    let mut out = format!("| {} |\n| {} |\n", head.join(" | "), rule.join(" | "));
-    for line in body {
-        out.push_str(&format!("| {} |\n", line.join(" | ")));
-    }
-    out
+    let rule = (0..head.len()).map(|c| if c == 0 { "---" } else { "---:" });
+    piped(head) + &piped(rule) + &body.iter().map(piped).collect::<String>()
 }
 
 /// "2^22", or digits for what is no power of two.
-fn photons_in_short(photons: u64) -> String {
+fn photons_in_short(&photons: &u64) -> String {
     if photons >= 1024 && photons.is_power_of_two() {
         format!("2^{}", photons.trailing_zeros())
     } else {
@@ -199,14 +161,13 @@ fn photons_in_short(photons: u64) -> String {
     }
 }
 
-/// Text from outside on one line.
-fn unbroken(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
-}
-
 /// Text from outside between backticks, in a table's cell: nothing that ends either.
 fn one_line(text: &str) -> String {
-    unbroken(text).replace('`', "'").replace('|', "/")
+    printable(text).replace('`', "'").replace('|', "/")
+}
+
+fn code(name: &str) -> String {
+    format!("`{}`", one_line(name))
 }
 
 /// Text from outside as it is, whatever marks it contains.

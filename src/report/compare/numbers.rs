@@ -1,7 +1,8 @@
 //! How the numbers of a study are written for people, and the marks that go with them.
 
-use crate::lab::study::fit::{Law, Prediction, Uncertainty};
-use crate::lab::study::table::Row;
+use crate::lab::study::fit::{Prediction, Uncertainty};
+use crate::lab::study::results::{Study, VariantResult};
+use crate::lab::study::table::{Row, Table, Trend};
 use crate::report::numbers::three_digits;
 
 /// Marks behind numbers; the footnotes say what they mean.
@@ -41,9 +42,9 @@ impl Marks {
     }
 
     /// The exponent of N with its standard error.
-    pub fn rate(&self, law: Option<&Law>, limited: bool) -> String {
-        let Some(law) = law else { return UNKNOWN.to_owned() };
-        let limited = if limited { self.limited } else { "" };
+    pub fn rate(&self, trend: &Trend) -> String {
+        let Some(law) = trend.law else { return UNKNOWN.to_owned() };
+        let limited = if trend.limited_by_reference { self.limited } else { "" };
         let mark = if law.uncertainty == Uncertainty::Residuals { self.one_seed } else { "" };
         match law.rate_standard_error {
             Some(error) => format!("{:.3} +- {error:.3}{mark}{limited}", law.rate),
@@ -58,6 +59,46 @@ impl Marks {
             format!("{}{mark}", three_digits(p.value))
         })
     }
+}
+
+/// What a table says of one variant at one N on one grid.
+pub struct Line<'a> {
+    /// The variant.
+    pub variant: &'a VariantResult,
+    /// Its errors.
+    pub row: &'a Row,
+    /// How they fall.
+    pub trend: &'a Trend,
+    /// Millions of photons a CPU second.
+    pub speed: Option<f64>,
+    /// The error of `mc` over its own by the paper.
+    pub paper: Option<f64>,
+}
+
+/// A column of such a table: its head, and what stands in it.
+pub type Column = (&'static str, fn(&Line<'_>) -> String);
+
+/// Heads and entries of a table; columns of the paper only where it says something about the scene.
+pub fn filled(
+    columns: &[Column],
+    study: &Study,
+    table: &Table,
+    photons: u64,
+    grid: usize,
+) -> (Vec<&'static str>, Vec<Vec<String>>) {
+    let shown = || columns.iter().filter(|(head, _)| study.is_of_paper() || !head.contains("paper"));
+    let lines = study.variants.iter().enumerate().filter_map(|(v, variant)| {
+        let paper = study.paper_ratio(&variant.name);
+        let (trend, speed) = (&table.trends[v][grid], table.photons_per_cpu_s[v].map(|s| s / 1e6));
+        table.row(v, photons, grid).map(|row| Line { variant, row, trend, speed, paper })
+    });
+    let body = lines.map(|line| shown().map(|(_, entry)| entry(&line)).collect()).collect();
+    (shown().map(|(head, _)| *head).collect(), body)
+}
+
+/// A ratio of the paper, two digits behind the point.
+pub fn of_paper(ratio: Option<f64>) -> String {
+    ratio.map_or(UNKNOWN.to_owned(), |ratio| format!("{ratio:.2}"))
 }
 
 /// Three digits, or [`UNKNOWN`].

@@ -4,7 +4,7 @@ use crate::lab::study::results::Study;
 use crate::lab::study::table::Table;
 use crate::report::numbers::{grouped, three_digits};
 
-use super::numbers::{ASCII, UNKNOWN, known};
+use super::numbers::{ASCII, Column, filled, known, of_paper};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};
 
 /// Widest line.
@@ -12,6 +12,19 @@ pub const WIDTH: usize = 110;
 /// Narrowest that names of variants are cut to.
 const NARROWEST_NAME: usize = 12;
 const GAP: &str = "  ";
+
+/// What is shown of a variant on a grid, heads in two lines.
+const COLUMNS: [Column; 9] = [
+    ("\nvariant", |l| l.variant.name.clone()),
+    ("\nnRMS, %", |l| ASCII.error(l.row)),
+    ("\nrate", |l| ASCII.rate(l.trend)),
+    ("coordi-\nnates", |l| three_digits(l.row.coordinates)),
+    ("Mphotons\n/ CPU s", |l| known(l.speed)),
+    ("mc's error / own\nequal N", |l| known(l.row.ratio_equal_n)),
+    ("\npaper", |l| of_paper(l.paper)),
+    ("\nequal time", |l| ASCII.prediction(l.row.ratio_equal_time)),
+    ("CPU s\nto 1 %", |l| ASCII.prediction(l.trend.time_to_target)),
+];
 
 /// The table, with what it was measured against, the meaning of its marks, and warnings.
 pub fn text(study: &Study, table: &Table) -> String {
@@ -25,7 +38,8 @@ pub fn text(study: &Study, table: &Table) -> String {
         Some(photons) => {
             for (g, grid) in study.grids.iter().enumerate() {
                 lines.push(format!("\nN = {} on {} cells", grouped(photons), cells(*grid)));
-                lines.extend(grid_table(study, table, photons, g));
+                let (head, body) = filled(&COLUMNS, study, table, photons, g);
+                lines.extend(aligned(&head, body));
             }
         }
     }
@@ -42,71 +56,27 @@ pub fn text(study: &Study, table: &Table) -> String {
     lines.join("\n") + "\n"
 }
 
-/// One grid: a line a variant.
-fn grid_table(study: &Study, table: &Table, photons: u64, grid: usize) -> Vec<String> {
-    let paper = study.variants.iter().any(|v| study.paper_ratio(&v.name).is_some());
-    let mut head =
-        vec![["", "variant"], ["", "nRMS, %"], ["", "rate"], ["coordi-", "nates"], ["Mphotons", "/ CPU s"]];
-    head.extend([["mc's error / own", "equal N"], ["", "equal time"], ["CPU s", "to 1 %"]]);
-    if paper {
-        head.insert(6, ["", "paper"]);
-    }
-    let mut body = Vec::new();
-    for (v, variant) in study.variants.iter().enumerate() {
-        let Some(row) = table.row(v, photons, grid) else { continue };
-        let trend = &table.trends[v][grid];
-        let speed = table.photons_per_cpu_s[v].map(|s| s / 1e6);
-        let mut line = vec![
-            variant.name.clone(),
-            ASCII.error(row),
-            ASCII.rate(trend.law.as_ref(), trend.limited_by_reference),
-            three_digits(row.coordinates),
-            known(speed),
-            known(row.ratio_equal_n),
-            ASCII.prediction(row.ratio_equal_time),
-            ASCII.prediction(trend.time_to_target),
-        ];
-        if paper {
-            line.insert(
-                6,
-                study.paper_ratio(&variant.name).map_or(UNKNOWN.to_owned(), |r| format!("{r:.2}")),
-            );
-        }
-        body.push(line);
-    }
-    aligned(&head, body)
-}
-
 /// Columns as wide as their widest entry, the first one to the left, the others to the right; names are cut if the whole
 /// is too wide. A headline may reach over empty ones to its right.
-fn aligned(head: &[[&str; 2]], mut body: Vec<Vec<String>>) -> Vec<String> {
+fn aligned(head: &[&str], mut body: Vec<Vec<String>>) -> Vec<String> {
     let columns = head.len();
+    let [above, below] = [0, 1].map(|i| head.iter().filter_map(|h| h.split('\n').nth(i)).collect::<Vec<_>>());
     (1..columns).for_each(|c| make_room_for_marks(&mut body, c));
-    let widest = |c: usize, body: &[Vec<String>]| {
-        let entries = body.iter().map(|line| line[c].chars().count());
-        entries.chain([head[c][1].len()]).max().unwrap_or(0)
-    };
-    let mut widths: Vec<usize> = (0..columns).map(|c| widest(c, &body)).collect();
+    let widest = |c: usize| body.iter().map(|line| line[c].chars().count()).fold(below[c].len(), usize::max);
+    let mut widths: Vec<usize> = (0..columns).map(widest).collect();
     let all = widths.iter().sum::<usize>() + GAP.len() * (columns - 1);
     if all > WIDTH {
         widths[0] = widths[0].saturating_sub(all - WIDTH).max(NARROWEST_NAME);
-        for line in &mut body {
-            line[0] = cut(&line[0], widths[0]);
-        }
+        body.iter_mut().for_each(|line| line[0] = cut(&line[0], widths[0]));
     }
-    let mut lines = vec![headline(head, &widths)];
-    let entries = |line: &[&str]| {
-        let padded: Vec<String> = line
-            .iter()
-            .zip(&widths)
-            .enumerate()
-            .map(|(c, (text, &w))| if c == 0 { format!("{text:<w$}") } else { format!("{text:>w$}") })
-            .collect();
-        padded.join(GAP)
+    body.insert(0, below.into_iter().map(str::to_owned).collect());
+    let entries = |line: &Vec<String>| {
+        let padded = line.iter().zip(&widths).enumerate();
+        let padded =
+            padded.map(|(c, (text, &w))| if c == 0 { format!("{text:<w$}") } else { format!("{text:>w$}") });
+        padded.collect::<Vec<_>>().join(GAP)
     };
-    lines.push(entries(&head.iter().map(|h| h[1]).collect::<Vec<_>>()));
-    lines.extend(body.iter().map(|line| entries(&line.iter().map(String::as_str).collect::<Vec<_>>())));
-    lines
+    [headline(&above, &widths)].into_iter().chain(body.iter().map(entries)).collect()
 }
 
 /// Spaces behind the numbers of a column that carry fewer marks than others, so that digits stand below each other.
@@ -120,20 +90,20 @@ fn make_room_for_marks(body: &mut [Vec<String>], column: usize) {
 }
 
 /// The upper of the two lines of heads: each at the right end of its column, or over it and the empty ones that follow.
-fn headline(head: &[[&str; 2]], widths: &[usize]) -> String {
+fn headline(head: &[&str], widths: &[usize]) -> String {
     let mut line = String::new();
     let mut end = 0;
     let mut c = 0;
     while c < head.len() {
         let mut last = c;
         end += widths[c];
-        while head[c][0].len() > widths[c] && last + 1 < head.len() && head[last + 1][0].is_empty() {
+        while head[c].len() > widths[c] && last + 1 < head.len() && head[last + 1].is_empty() {
             last += 1;
             end += GAP.len() + widths[last];
         }
-        let start = end.saturating_sub(head[c][0].len());
+        let start = end.saturating_sub(head[c].len());
         line.push_str(&" ".repeat(start.saturating_sub(line.len())));
-        line.push_str(head[c][0]);
+        line.push_str(head[c]);
         end += GAP.len();
         c = last + 1;
     }

@@ -2,32 +2,26 @@
 
 use std::fmt::Write;
 
-use crate::lab::room::{RoomStudy, SEQUENCES, Value};
+use crate::lab::room::{RoomStudy, Row, SEQUENCES, Value};
+use crate::lab::study::norms::Errors;
 use crate::report::compare::csv::HEADER;
 use crate::report::numbers::bare;
 
-use super::paper::{last_pair, paper, paper_between};
+use super::paper::{paper, paper_between};
 
 /// One row for each sequence and number of photons, with the header of every `compare.csv`; errors are fractions, empty
 /// where unknown.
 pub fn csv(study: &RoomStudy) -> String {
     let mut out = format!("{HEADER}\n");
     for row in study.rows() {
+        let Row { photons, photons_per_s, coordinates, ratio_equal_n, .. } = row;
+        let Errors { relative_rms, nrms, relative_l1 } = row.errors;
+        let [spread, rate, ratio_equal_time] = [row.nrms_spread, row.rate, row.ratio_equal_time].map(bare);
+        let (name, cells) = (SEQUENCES[row.sequence].name(), study.areas_m2.len());
         let _infallible = writeln!(
             out,
-            "{},{},{},{},{},{},{},{},{},{},{},{}",
-            SEQUENCES[row.sequence].name(),
-            row.photons,
-            study.areas_m2.len(),
-            row.errors.relative_rms,
-            row.errors.nrms,
-            row.errors.relative_l1,
-            bare(row.nrms_spread),
-            row.photons_per_s,
-            row.coordinates,
-            bare(row.rate),
-            row.ratio_equal_n,
-            bare(row.ratio_equal_time)
+            "{name},{photons},{cells},{relative_rms},{nrms},{relative_l1},{spread},{photons_per_s},{coordinates},\
+             {rate},{ratio_equal_n},{ratio_equal_time}"
         );
     }
     out
@@ -44,10 +38,8 @@ pub fn deviations_csv(study: &RoomStudy) -> String {
     for d in study.deviations() {
         row(d.sequences, d.photons, d.value, paper(d.sequences[0], d.photons));
     }
-    let [_, many] = last_pair(study);
     for b in study.between() {
-        let [first, second] = b.sequences;
-        row(b.sequences, b.photons, b.value, paper_between(first, second, many));
+        row(b.sequences, b.photons, b.value, paper_between(b.sequences, b.photons[1]));
     }
     out
 }

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use crate::lab::room::{RoomStudy, Row, SEQUENCES};
-use crate::report::numbers::{grouped, rounded, written};
+use crate::report::numbers::{grouped, piped, rounded, written};
 
-use super::paper::{known, last_pair, mark, paper, paper_between, paper_ratio, printed, ratio, title, value};
+use super::paper::{between, known, last_pair, mark, paper, paper_ratio, ratio, title, value};
 
 /// The tables as Markdown, with the command that makes them.
 pub fn markdown(study: &RoomStudy, command: &str) -> String {
@@ -13,130 +13,108 @@ pub fn markdown(study: &RoomStudy, command: &str) -> String {
 }
 
 fn write_markdown(out: &mut String, study: &RoomStudy, command: &str) -> std::fmt::Result {
+    let RoomStudy { scene_name, scene_sha256, reflections, areas_m2, options, .. } = study;
+    let (triangles, seeds, [few, many]) = (areas_m2.len(), &options.seeds, last_pair(study).map(grouped));
+    let (arrivals, coordinates) = (reflections + 1, 2 * reflections + 4);
     writeln!(out, "# Sequences in a room\n")?;
     writeln!(out, "`{command}`, caustix {}.\n", env!("CARGO_PKG_VERSION"))?;
     writeln!(
         out,
-        "The experiment of S. Heinrich and A. Keller (1994), section 5, in a scene of our own: {} triangles, every photon \
-         reflected exactly {} times, its weight by channel added at each of its {} arrivals, {} coordinates. Scene \
-         {}, SHA-256 `{}`.\n",
-        study.areas_m2.len(),
-        study.reflections,
-        study.reflections + 1,
-        2 * study.reflections + 4,
-        study.scene_name,
-        study.scene_sha256
+        "The experiment of S. Heinrich and A. Keller (1994), section 5, in a scene of our own: {triangles} triangles, \
+         every photon reflected exactly {reflections} times, its weight by channel added at each of its {arrivals} \
+         arrivals, {coordinates} coordinates. Scene {scene_name}, SHA-256 `{scene_sha256}`.\n"
     )?;
     writeln!(
         out,
         "A deviation is sqrt(sum A d^2 / sum A) over the triangles, d the distance of two colours, in units of the \
-         greatest channel of the better estimate. Random points: mean and standard deviation over the seeds {:?}; the \
-         first N of one seed are part of its first 10 N.\n",
-        study.options.seeds
+         greatest channel of the better estimate. Random points: mean and standard deviation over the seeds {seeds:?}; \
+         the first N of one seed are part of its first 10 N.\n"
     )?;
     for sequence in 0..SEQUENCES.len() {
-        write_deviations(out, study, sequence)?;
+        writeln!(out, "## {}: between numbers of photons\n", title(sequence))?;
+        writeln!(out, "{}", deviations(study, sequence))?;
     }
-    write_ratios(out, study)?;
-    write_between(out, study)?;
-    write_errors(out, study)
-}
-
-/// One of the paper's tables 2 to 5.
-fn write_deviations(out: &mut String, study: &RoomStudy, sequence: usize) -> std::fmt::Result {
-    let ladder = &study.options.ladder;
-    let few = &ladder[..ladder.len() - 1];
-    writeln!(out, "## {}: between numbers of photons\n", title(sequence))?;
-    write!(out, "| N |")?;
-    few.iter().try_for_each(|n| write!(out, " {} |", grouped(*n)))?;
-    writeln!(out, "\n|---|{}", "---|".repeat(few.len()))?;
-    for many in 1..ladder.len() {
-        write!(out, "| {} |", grouped(ladder[many]))?;
-        for column in 0..few.len() {
-            if column >= many {
-                write!(out, " |")?;
-                continue;
-            }
-            write!(out, " {}", value(study.deviation(sequence, column, many)))?;
-            if let Some(p) = paper(sequence, [ladder[column], ladder[many]]) {
-                write!(out, " (paper {p:.2e})")?;
-            }
-            write!(out, " |")?;
-        }
-        writeln!(out)?;
-    }
-    writeln!(out)
-}
-
-fn write_ratios(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
-    let [few, many] = last_pair(study);
     writeln!(out, "## Random against the others\n")?;
-    writeln!(
-        out,
-        "Deviation of {} from {} photons, random over the other's:\n",
-        grouped(few),
-        grouped(many)
-    )?;
-    writeln!(out, "| sequence | ratio | paper |\n|---|---|---|")?;
-    for sequence in 1..SEQUENCES.len() {
-        let paper = paper_ratio(sequence, [few, many]).unwrap_or_else(|| "-".to_string());
-        writeln!(out, "| {} | {} | {paper} |", title(sequence), ratio(study.ratio_to_random(sequence)))?;
-    }
-    writeln!(out)
-}
-
-/// The paper's table 6.
-fn write_between(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
-    let [_, many] = last_pair(study);
-    writeln!(out, "## Between sequences, {} photons\n", grouped(many))?;
-    writeln!(out, "| | and | deviation | paper |\n|---|---|---|---|")?;
-    for b in study.between() {
-        let [first, second] = b.sequences;
-        let paper = printed(paper_between(first, second, many));
-        writeln!(out, "| {} | {} | {} | {paper} |", title(first), title(second), value(b.value))?;
-    }
-    writeln!(out)
-}
-
-fn write_errors(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
-    let [_, many] = last_pair(study);
+    writeln!(out, "Deviation of {few} from {many} photons, random over the other's:\n")?;
+    writeln!(out, "{}", ratios(study))?;
+    writeln!(out, "## Between sequences, {many} photons\n")?;
+    writeln!(out, "{}", table(&["", "and", "deviation", "paper"], between(study)))?;
     writeln!(out, "## Errors\n")?;
     writeln!(
         out,
-        "nRMS of the luminance against the mean of the other low-discrepancy sequences at {} photons (never the sequence \
-         itself). Errors marked * are less than three times what that reference is expected to be off by itself; rates \
-         leave them out. Ratios: the random sequence's error over this one's, with as many photons, and after as \
-         much time.\n",
-        grouped(many)
+        "nRMS of the luminance against the mean of the other low-discrepancy sequences at {many} photons (never the \
+         sequence itself). Errors marked * are less than three times what that reference is expected to be off by \
+         itself; rates leave them out. Ratios: the random sequence's error over this one's, with as many photons, and \
+         after as much time.\n"
     )?;
-    writeln!(
-        out,
-        "| sequence | photons | nRMS % | reference's own % | rate | at equal N | at equal time | photons/s | coordinates |"
-    )?;
-    writeln!(out, "|---|---|---|---|---|---|---|---|---|")?;
-    for row in study.rows() {
-        writeln!(
-            out,
-            "| {} | {} | {}{} | {} | {} | {} | {} | {} | {} |",
-            title(row.sequence),
-            grouped(row.photons),
-            with_spread(&row),
-            mark(&row),
-            rounded(100.0 * row.reference_nrms, 2),
-            known(row.rate),
-            known(Some(row.ratio_equal_n)),
-            known(row.ratio_equal_time),
-            grouped(row.photons_per_s as u64),
-            rounded(row.coordinates, 4)
-        )?;
-    }
+    write!(out, "{}", errors(study))?;
     if !study.is_closed() {
         writeln!(out, "\n**Photons left the scene: it is not closed.**")?;
     }
     Ok(())
 }
 
+/// One of the paper's tables 2 to 5.
+fn deviations(study: &RoomStudy, sequence: usize) -> String {
+    let ladder = &study.options.ladder;
+    let columns = ladder.len() - 1;
+    let entry = |few: usize, many: usize| {
+        if few >= many {
+            return String::new();
+        }
+        let paper = paper(sequence, [ladder[few], ladder[many]]);
+        let paper = paper.map_or(String::new(), |p| format!(" (paper {p:.2e})"));
+        value(study.deviation(sequence, few, many)) + &paper
+    };
+    let head = ["N".to_owned()].into_iter().chain(ladder[..columns].iter().map(|n| grouped(*n)));
+    let line = |many: usize| {
+        let entries = (0..columns).map(|few| entry(few, many));
+        [grouped(ladder[many])].into_iter().chain(entries).collect::<Vec<_>>()
+    };
+    table(&head.collect::<Vec<_>>(), (1..ladder.len()).map(line))
+}
+
+fn ratios(study: &RoomStudy) -> String {
+    let line = |sequence: usize| {
+        let paper = paper_ratio(sequence, last_pair(study)).unwrap_or_else(|| "-".to_string());
+        [title(sequence).to_owned(), ratio(study.ratio_to_random(sequence)), paper]
+    };
+    table(&["sequence", "ratio", "paper"], (1..SEQUENCES.len()).map(line))
+}
+
+fn errors(study: &RoomStudy) -> String {
+    let head = [
+        "sequence",
+        "photons",
+        "nRMS %",
+        "reference's own %",
+        "rate",
+        "at equal N",
+        "at equal time",
+        "photons/s",
+        "coordinates",
+    ];
+    let line = |row: Row| {
+        [
+            title(row.sequence).to_owned(),
+            grouped(row.photons),
+            with_spread(&row) + mark(&row),
+            rounded(100.0 * row.reference_nrms, 2),
+            known(row.rate),
+            known(Some(row.ratio_equal_n)),
+            known(row.ratio_equal_time),
+            grouped(row.photons_per_s as u64),
+            rounded(row.coordinates, 4),
+        ]
+    };
+    table(&head, study.rows().into_iter().map(line))
+}
+
 fn with_spread(row: &Row) -> String {
     let error = rounded(100.0 * row.errors.nrms, 3);
     row.nrms_spread.map_or(error.clone(), |s| format!("{error} +- {}", rounded(100.0 * s, 2)))
+}
+
+fn table(head: &[impl AsRef<str>], lines: impl Iterator<Item = impl IntoIterator<Item = String>>) -> String {
+    piped(head) + "|" + &"---|".repeat(head.len()) + "\n" + &lines.map(piped).collect::<String>()
 }

@@ -5,19 +5,17 @@ use std::fmt::Write;
 use crate::lab::room::{RoomStudy, SEQUENCES};
 use crate::report::numbers::{grouped, rounded, written};
 
-use super::paper::{known, last_pair, mark, paper, paper_between, paper_ratio, printed, ratio, title, value};
+use super::paper::{between, known, last_pair, mark, paper, paper_ratio, printed, ratio, title, value};
 
 /// The tables for a terminal.
 pub fn text(study: &RoomStudy) -> String {
     written(|out| {
         writeln!(out, "scene      {}", study.scene_name)?;
         let ladder: Vec<String> = study.options.ladder.iter().map(|n| grouped(*n)).collect();
+        let (ladder, reflections, triangles) = (ladder.join(", "), study.reflections, study.areas_m2.len());
         writeln!(
             out,
-            "photons    {}; exactly {} reflections each, no roulette; {} triangles",
-            ladder.join(", "),
-            study.reflections,
-            study.areas_m2.len()
+            "photons    {ladder}; exactly {reflections} reflections each, no roulette; {triangles} triangles"
         )?;
         write_deviations(out, study)?;
         write_errors(out, study)?;
@@ -45,11 +43,8 @@ fn write_deviations(out: &mut String, study: &RoomStudy) -> std::fmt::Result {
         writeln!(out, "  {:<24} {ratio:<13} {paper}", title(sequence))?;
     }
     writeln!(out, "\ndeviation between sequences, {} photons", grouped(many))?;
-    for b in study.between() {
-        let [first, second] = b.sequences;
-        let paper = printed(paper_between(first, second, many));
-        let (first, second) = (title(first), title(second));
-        writeln!(out, "  {first:<24} {second:<24} {:<22} {paper:>8}", value(b.value))?;
+    for [first, second, value, paper] in between(study) {
+        writeln!(out, "  {first:<24} {second:<24} {value:<22} {paper:>8}")?;
     }
     Ok(())
 }

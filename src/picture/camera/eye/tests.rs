@@ -23,8 +23,8 @@ fn seen(surfaces: Vec<(Shape, Material)>, paths: u64) -> [f64; 3] {
     let view =
         View::new(&scene, &Camera::new(CameraSpec { background_cd_m2: PHOTOGRAPHED, ..pinhole }).unwrap(), 0)
             .unwrap();
-    let looks = Looks { emission: true, direct: true, densities: &[] };
-    let mut eye = EyePath::<3>::new(&view, looks, 1);
+    let pass = Pass { direct: true, ..Pass::EMISSION };
+    let mut eye = EyePath::<3>::new(&view, &pass);
     let points = IndependentPoints::new(1, 0);
     let mut sum = [0.0; 3];
     for i in 0..paths {

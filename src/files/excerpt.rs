@@ -1,0 +1,25 @@
+//! What a message tells of a text that a file brought in: a piece of it, and where it stands.
+
+/// At most 40 characters, quoted.
+pub(crate) fn quoted(text: &str) -> String {
+    const MOST: usize = 40;
+    match text.char_indices().nth(MOST) {
+        None => format!("{text:?}"),
+        Some((end, _)) => format!("{:?}...", &text[..end]),
+    }
+}
+
+/// Line and column, both from 1, of a byte in the text; the column counts characters. CR LF, LF and CR end lines.
+pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
+    let (mut line, mut column) = (1, 1);
+    let mut after_cr = false;
+    for (_, c) in text.char_indices().take_while(|(i, _)| *i < offset) {
+        match c {
+            '\n' if after_cr => {}
+            '\n' | '\r' => (line, column) = (line + 1, 1),
+            _ => column += 1,
+        }
+        after_cr = c == '\r';
+    }
+    (line, column)
+}
