@@ -19,7 +19,20 @@ use crate::surface::{
     Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated,
 };
 
-const TYPES: [&str; 5] = ["dielectric", "mirror", "lambertian", "absorber", "tabulated"];
+/// What makes a material of its table; the direction from which azimuths are counted goes into the second, where one is given.
+type Reader = fn(&mut Table<'_, '_>, &mut Option<DVec3>) -> Option<Make<Material>>;
+
+/// The types, each with its reader.
+const TYPES: [(&str, Reader); 5] = [
+    ("dielectric", |table, _| read_dielectric(table).map(made)),
+    ("mirror", |table, _| read_mirror(table).map(made)),
+    ("lambertian", |table, _| read_lambertian(table).map(made)),
+    ("absorber", |table, _| {
+        table.call("an absorber");
+        Some(made(Material::Absorber))
+    }),
+    ("tabulated", read_tabulated),
+];
 
 const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back), ("both", Sides::Both)];
 
@@ -27,23 +40,15 @@ const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Ene
 
 pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
     if table.word_of("type") == Some("conductor") {
-        let required = format!("{}; conductor is not available yet", suggest::list(&TYPES));
+        let required =
+            format!("{}; conductor is not available yet", suggest::list(&TYPES.map(|(word, _)| word)));
         table.error("type", Kind::Unavailable, &required);
         return None;
     }
-    let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
-    let kind = table.needed("type", required, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
+    let required = suggest::list_quoted(&TYPES.map(|(word, _)| word));
+    let reader = table.needed("type", &required, |t, key| t.word(key, &TYPES))?;
     let mut reference = None;
-    let make = match kind {
-        "dielectric" => read_dielectric(&mut table).map(made),
-        "mirror" => read_mirror(&mut table).map(made),
-        "lambertian" => read_lambertian(&mut table).map(made),
-        "absorber" => {
-            table.call("an absorber");
-            Some(made(Material::Absorber))
-        }
-        _ => read_tabulated(&mut table, &mut reference),
-    };
+    let make = reader(&mut table, &mut reference);
     table.finish();
     Some(MaterialPart { make: make?, reference })
 }
