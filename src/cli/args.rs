@@ -43,6 +43,9 @@ pub struct RenderArgs {
     /// Trace nothing: the camera's picture of photons saved by --save-map under the same settings.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
+    /// Exit with 4 where a warning says that a number is wrong (severity "untrusted").
+    #[arg(long)]
+    pub strict: bool,
     /// No progress bar and no summary.
     #[arg(long)]
     pub quiet: bool,

@@ -33,6 +33,8 @@ pub mod exit {
     pub const WRONG: u8 = 1;
     /// Usage.
     pub const USAGE: u8 = 2;
+    /// With --strict: a warning of severity "untrusted".
+    pub const UNTRUSTED: u8 = 4;
     /// Interrupted; what there is was written.
     pub const INTERRUPTED: u8 = 130;
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::error::warning::Severity;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::{make_directory, write_bytes};
 use crate::files::scene_toml::{self, RunDefaults};
@@ -88,6 +89,8 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
         print(&format!("written to {}\n", directory.display()));
     }
+    let of_run = report.warnings.iter().filter(|warning| warning.code != "scene");
+    of_run.for_each(|warning| say(&format!("warning: {warning}")));
     if !unwritten.is_empty() {
         return Err(unwritten);
     }
@@ -100,7 +103,9 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         ));
         return Ok(exit::INTERRUPTED);
     }
-    Ok(seen_wholly(unseen, &directory))
+    let seen = seen_wholly(unseen, &directory);
+    let is_untrusted = report.warnings.iter().any(|warning| warning.severity == Severity::Untrusted);
+    Ok(if seen == exit::DONE && args.strict && is_untrusted { exit::UNTRUSTED } else { seen })
 }
 
 /// Writes the files of one receiver; their names. Files written before one that cannot be stay.

@@ -168,4 +168,16 @@ mod tests {
         assert!(beam.direct_light(DVec3::new(1.5, 1.5, -1.0), [0.5; 2]).is_none());
         assert!(beam.direct_light(DVec3::new(0.0, 0.0, 1.5), [0.5; 2]).is_none());
     }
+
+    #[test]
+    fn a_rectangular_beam_lights_its_corners() {
+        let beam = beam(BeamSection::Rectangle { width: 4.0, height: 2.0 }, 16.0);
+        assert_eq!(beam.area_m2(), 8.0);
+        // Outside the inscribed ellipse, inside the rectangle.
+        for (x, y, lx) in [(1.9, 0.9, Some(2.0)), (-1.9, 0.9, Some(2.0)), (2.1, 0.0, None), (0.0, 1.1, None)]
+        {
+            let light = beam.direct_light(DVec3::new(x, y, -1.0), [0.5; 2]);
+            assert_eq!(light.map(|light| light.illuminance_lx), lx, "{x}, {y}");
+        }
+    }
 }

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::run::{Estimate, Outcome, Plan, StoppedBy};
+use crate::run::{Estimate, Outcome, Plan, StoppedBy, warnings};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
 use crate::transport::census::Exceptions;
@@ -42,8 +43,8 @@ pub struct Report<'a> {
     pub camera: Option<CameraReport>,
     /// "photons" or "interrupt".
     pub stopped_by: &'static str,
-    /// Warnings about the scene and its files.
-    pub warnings: Vec<String>,
+    /// What must be known beside the numbers: about the run, the gravest first, then about the scene and its files.
+    pub warnings: Vec<Warning>,
 }
 
 /// What stands at the head of every report.json.
@@ -178,6 +179,18 @@ pub struct ReceiverReport<'a> {
     pub files: &'a [String],
 }
 
+/// What was found before the run, as notes.
+fn of_scene(found: &[Diagnostic]) -> impl Iterator<Item = Warning> {
+    found.iter().map(|found| Warning {
+        severity: Severity::Note,
+        code: "scene",
+        message: found.to_string(),
+        surfaces: Vec::new(),
+        share: None,
+        remedy: found.required().to_owned(),
+    })
+}
+
 impl<'a> Report<'a> {
     /// The report of a run. `files` names what was written for each receiver.
     pub fn new(
@@ -232,7 +245,7 @@ impl<'a> Report<'a> {
                 StoppedBy::Photons => "photons",
                 StoppedBy::Interrupt => "interrupt",
             },
-            warnings: scene.warnings.iter().map(ToString::to_string).collect(),
+            warnings: warnings(scene, outcome).into_iter().chain(of_scene(&scene.warnings)).collect(),
         }
     }
 }

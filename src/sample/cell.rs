@@ -4,6 +4,8 @@
 //! A cell is [theta1, theta1 + dt] x [phi1, phi1 + dp] with values A1, A2 at theta1 (at phi1 and phi2) and
 //! B1, B2 at the far theta, bilinear between, in the solid-angle measure sin(theta) dtheta dphi. The marginal
 //! of theta is in [`super::marginal`]; the conditional of phi is a quadratic.
+//!
+//! The equation of a cell, (8), is solved in [`super::marginal`].
 
 use glam::DVec3;
 

@@ -31,11 +31,21 @@ pub struct SurfaceOptions {
     pub contact: Option<Joint>,
 }
 
+#[derive(Debug)]
+struct EmitterPart {
+    name: String,
+    emitter: Emitter,
+    colour: Colour,
+    /// The medium it stands in, where that is told.
+    medium: Option<Medium>,
+    place: Option<Place>,
+}
+
 /// The parts of a scene so far. [`SceneBuilder::build`] makes the scene of them, or tells all that is wrong.
 #[derive(Debug, Default)]
 pub struct SceneBuilder {
     surfaces: Vec<(Surface, Material, SurfaceOptions, Option<Place>)>,
-    emitters: Vec<(String, Emitter, Colour, Option<Medium>, Option<Place>)>,
+    emitters: Vec<EmitterPart>,
     receivers: Vec<(ReceiverSpec, Option<Place>)>,
     camera: Option<Camera>,
     camera_medium: Option<Medium>,
@@ -82,8 +92,8 @@ impl SceneBuilder {
     /// The medium in which the last emitter stands, where it is behind an open transparent surface. (In a body it need not
     /// be told.)
     pub fn emitter_in(&mut self, medium: Medium) -> &mut Self {
-        if let Some((_, _, _, own, _)) = self.emitters.last_mut() {
-            *own = Some(medium);
+        if let Some(part) = self.emitters.last_mut() {
+            part.medium = Some(medium);
         }
         self
     }
@@ -106,7 +116,8 @@ impl SceneBuilder {
         emitter: Emitter,
         colour: Colour,
     ) -> &mut Self {
-        self.emitters.push((name.into(), emitter, colour, None, self.place));
+        let (name, place) = (name.into(), self.place);
+        self.emitters.push(EmitterPart { name, emitter, colour, medium: None, place });
         self
     }
 
@@ -178,7 +189,7 @@ impl SceneBuilder {
         }
         let (mut emitter_names, mut emitters, mut emitter_colours) = (Vec::new(), Vec::new(), Vec::new());
         let mut starts = Vec::new();
-        for (name, emitter, colour, medium, place) in self.emitters {
+        for EmitterPart { name, emitter, colour, medium, place } in self.emitters {
             let ambient = medium.map_or(0, |medium| media.number(medium));
             match check::start(&name, &emitter, &geometry) {
                 Ok(start) => starts.push(start.in_ambient(ambient)),
@@ -215,7 +226,7 @@ impl SceneBuilder {
 
     /// An error for each name of emitters or receivers that is another's. (Surfaces' names are the geometry's to check.)
     fn names_used_twice(&self) -> Vec<Diagnostic> {
-        let emitters = self.emitters.iter().map(|(name, _, _, _, place)| ("emitter", name.clone(), place));
+        let emitters = self.emitters.iter().map(|part| ("emitter", part.name.clone(), &part.place));
         // Cases are not told apart: some file systems don't, and these names become file names.
         let receivers = self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_lowercase(), place));
         let mut known = BTreeSet::new();

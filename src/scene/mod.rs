@@ -116,10 +116,8 @@ impl Scene {
             return self.geometry.occluded(origin, direction, distance, &at);
         }
         loop {
-            let Some(hit) = self.geometry.nearest(origin, direction, &at, &mut 0) else { return false };
-            if !(hit.t < distance) {
-                return false;
-            }
+            let hit = self.geometry.nearest(origin, direction, &at, &mut 0);
+            let Some(hit) = hit.filter(|hit| hit.t < distance) else { return false };
             if self.media.interface(&hit, &at) != Interface::Nothing {
                 return true;
             }

@@ -12,7 +12,7 @@ use super::independent::IndependentPoints;
 use super::kronecker::KroneckerPoints;
 use super::lattice::LatticePoints;
 use super::owen::OwenPoints;
-use super::shift::{digital_shift, rotation};
+use super::shift::{Shifted, digital_shift, rotation};
 use super::sobol::SobolPoints;
 use super::stratified::StratifiedPoints;
 use super::{Points, Sequence};
@@ -22,7 +22,35 @@ use crate::error::{Diagnostic, Kind, Result};
 pub const MAX_NUMBER: u64 = 1 << 48;
 
 /// The points of one replicate of any sequence.
-pub struct OtherPoints(Box<dyn Points>);
+#[derive(Debug, Clone)]
+pub enum OtherPoints {
+    /// Independent points.
+    Independent(IndependentPoints),
+    /// Plain Sobol' points.
+    Sobol(SobolPoints),
+    /// Owen-scrambled Sobol' points.
+    SobolOwen(OwenPoints),
+    /// Sobol' points under a digital shift.
+    SobolShift(Shifted<SobolPoints>),
+    /// Halton points, with or without Faure's permutations.
+    Halton(HaltonPoints),
+    /// The same, rotated.
+    HaltonRotation(Shifted<HaltonPoints>),
+    /// A Hammersley set.
+    Hammersley(HammersleyPoints),
+    /// The same, rotated.
+    HammersleyRotation(Shifted<HammersleyPoints>),
+    /// A rank-1 lattice.
+    Lattice(LatticePoints),
+    /// The same, rotated.
+    LatticeRotation(Shifted<LatticePoints>),
+    /// An additive recurrence: Weyl's or the R2-type one.
+    Kronecker(KroneckerPoints),
+    /// The same, rotated.
+    KroneckerRotation(Shifted<KroneckerPoints>),
+    /// Jittered or Latin hypercube points.
+    Stratified(StratifiedPoints),
+}
 
 impl OtherPoints {
     /// The points of this sequence, seed and replicate; `number` is the number of points N of the set, which the
@@ -33,28 +61,35 @@ impl OtherPoints {
     /// A sequence that needs the number of points without one, or with 0 or more than [`MAX_NUMBER`].
     pub fn new(sequence: Sequence, seed: u64, replicate: u32, number: Option<u64>) -> Result<Self> {
         let known = || known_number(sequence, number);
-        Ok(Self(match sequence {
-            Sequence::Independent => Box::new(IndependentPoints::new(seed, replicate)),
-            Sequence::Sobol => Box::new(SobolPoints),
-            Sequence::SobolOwen => Box::new(OwenPoints::new(seed, replicate)),
-            Sequence::SobolShift => Box::new(digital_shift(SobolPoints, seed, replicate)),
-            Sequence::Halton => Box::new(HaltonPoints::plain()),
-            Sequence::HaltonRotation => Box::new(rotation(HaltonPoints::plain(), seed, replicate)),
-            Sequence::HaltonFaure => Box::new(HaltonPoints::faure()),
-            Sequence::HaltonFaureRotation => Box::new(rotation(HaltonPoints::faure(), seed, replicate)),
-            Sequence::Hammersley => Box::new(HammersleyPoints::new(known()?)),
+        let turned = |points| rotation(points, seed, replicate);
+        Ok(match sequence {
+            Sequence::Independent => Self::Independent(IndependentPoints::new(seed, replicate)),
+            Sequence::Sobol => Self::Sobol(SobolPoints),
+            Sequence::SobolOwen => Self::SobolOwen(OwenPoints::new(seed, replicate)),
+            Sequence::SobolShift => Self::SobolShift(digital_shift(SobolPoints, seed, replicate)),
+            Sequence::Halton => Self::Halton(HaltonPoints::plain()),
+            Sequence::HaltonRotation => Self::HaltonRotation(turned(HaltonPoints::plain())),
+            Sequence::HaltonFaure => Self::Halton(HaltonPoints::faure()),
+            Sequence::HaltonFaureRotation => Self::HaltonRotation(turned(HaltonPoints::faure())),
+            Sequence::Hammersley => Self::Hammersley(HammersleyPoints::new(known()?)),
             Sequence::HammersleyRotation => {
-                Box::new(rotation(HammersleyPoints::new(known()?), seed, replicate))
+                Self::HammersleyRotation(rotation(HammersleyPoints::new(known()?), seed, replicate))
             }
-            Sequence::Lattice => Box::new(LatticePoints::new(known()?)),
-            Sequence::LatticeRotation => Box::new(rotation(LatticePoints::new(known()?), seed, replicate)),
-            Sequence::Weyl => Box::new(KroneckerPoints::weyl()),
-            Sequence::WeylRotation => Box::new(rotation(KroneckerPoints::weyl(), seed, replicate)),
-            Sequence::Kronecker => Box::new(KroneckerPoints::roberts()),
-            Sequence::KroneckerRotation => Box::new(rotation(KroneckerPoints::roberts(), seed, replicate)),
-            Sequence::Jittered => Box::new(StratifiedPoints::jittered(seed, replicate, known()?)),
-            Sequence::LatinHypercube => Box::new(StratifiedPoints::latin(seed, replicate, known()?)),
-        }))
+            Sequence::Lattice => Self::Lattice(LatticePoints::new(known()?)),
+            Sequence::LatticeRotation => {
+                Self::LatticeRotation(rotation(LatticePoints::new(known()?), seed, replicate))
+            }
+            Sequence::Weyl => Self::Kronecker(KroneckerPoints::weyl()),
+            Sequence::WeylRotation => {
+                Self::KroneckerRotation(rotation(KroneckerPoints::weyl(), seed, replicate))
+            }
+            Sequence::Kronecker => Self::Kronecker(KroneckerPoints::roberts()),
+            Sequence::KroneckerRotation => {
+                Self::KroneckerRotation(rotation(KroneckerPoints::roberts(), seed, replicate))
+            }
+            Sequence::Jittered => Self::Stratified(StratifiedPoints::jittered(seed, replicate, known()?)),
+            Sequence::LatinHypercube => Self::Stratified(StratifiedPoints::latin(seed, replicate, known()?)),
+        })
     }
 }
 
@@ -76,7 +111,21 @@ fn known_number(sequence: Sequence, number: Option<u64>) -> Result<NonZeroU64> {
 impl Points for OtherPoints {
     #[inline]
     fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
-        self.0.coordinate(index, coordinate)
+        match self {
+            Self::Independent(points) => points.coordinate(index, coordinate),
+            Self::Sobol(points) => points.coordinate(index, coordinate),
+            Self::SobolOwen(points) => points.coordinate(index, coordinate),
+            Self::SobolShift(points) => points.coordinate(index, coordinate),
+            Self::Halton(points) => points.coordinate(index, coordinate),
+            Self::HaltonRotation(points) => points.coordinate(index, coordinate),
+            Self::Hammersley(points) => points.coordinate(index, coordinate),
+            Self::HammersleyRotation(points) => points.coordinate(index, coordinate),
+            Self::Lattice(points) => points.coordinate(index, coordinate),
+            Self::LatticeRotation(points) => points.coordinate(index, coordinate),
+            Self::Kronecker(points) => points.coordinate(index, coordinate),
+            Self::KroneckerRotation(points) => points.coordinate(index, coordinate),
+            Self::Stratified(points) => points.coordinate(index, coordinate),
+        }
     }
 }
 

@@ -36,26 +36,28 @@ impl Keys {
 
 /// Points that are joined, coordinate by coordinate, with random keys.
 #[derive(Debug, Clone)]
-pub struct Shifted<P, F> {
+pub struct Shifted<P> {
     points: P,
     keys: Keys,
-    join: F,
+    /// Added modulo 1; else the bits are flipped where the key has ones.
+    is_rotation: bool,
 }
 
 /// These points with their bits flipped where a random key of the coordinate has ones.
-pub fn digital_shift<P: Points>(points: P, seed: u64, replicate: u32) -> impl Points {
-    Shifted { points, keys: Keys::new(seed, replicate, SALT_SHIFT), join: |bits, key| bits ^ key }
+pub fn digital_shift<P: Points>(points: P, seed: u64, replicate: u32) -> Shifted<P> {
+    Shifted { points, keys: Keys::new(seed, replicate, SALT_SHIFT), is_rotation: false }
 }
 
 /// These points moved on a torus by a random vector.
-pub fn rotation<P: Points>(points: P, seed: u64, replicate: u32) -> impl Points {
-    Shifted { points, keys: Keys::new(seed, replicate, SALT_ROTATE), join: u64::wrapping_add }
+pub fn rotation<P: Points>(points: P, seed: u64, replicate: u32) -> Shifted<P> {
+    Shifted { points, keys: Keys::new(seed, replicate, SALT_ROTATE), is_rotation: true }
 }
 
-impl<P: Points, F: Fn(u64, u64) -> u64 + Sync> Points for Shifted<P, F> {
+impl<P: Points> Points for Shifted<P> {
     #[inline]
     fn coordinate(&self, index: u64, coordinate: u32) -> u64 {
-        (self.join)(self.points.coordinate(index, coordinate), self.keys.of(coordinate))
+        let (bits, key) = (self.points.coordinate(index, coordinate), self.keys.of(coordinate));
+        if self.is_rotation { bits.wrapping_add(key) } else { bits ^ key }
     }
 }
 

@@ -117,6 +117,8 @@ mod tests {
             assert_eq!(sheet().eval(DVec3::Z, a, b), sheet().eval(DVec3::Z, b, a));
         }
         assert!(sheet().is_coloured() && sheet().kind() == Kind::Scattering);
+        let dark = DiffuseTransmission::new([0.0; 3], [0.0; 3]).unwrap();
+        assert!(dark.kind() == Kind::Absorbing && dark.requires().is_empty());
     }
 
     #[test]

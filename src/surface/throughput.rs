@@ -251,5 +251,10 @@ mod tests {
         assert_eq!(photon.weight(), [0.25, 0.0625, 0.0]);
         assert!(!photon.reflect(&wall, &mut script));
         assert!(script.asked.is_empty());
+        // A table's scattering counts like a wall's reflection.
+        let mut photon = Fixed::white(1);
+        assert_ne!(photon.scatter([0.5; 3], false, &mut script), Fate::Ends);
+        assert_eq!(photon.scatter([0.5; 3], false, &mut script), Fate::Ends);
+        assert!(!photon.reflect(&wall, &mut script));
     }
 }

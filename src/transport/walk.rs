@@ -1,4 +1,6 @@
 //! The walk of one photon.
+//!
+//! Its Russian roulette is part of what it carries: `surface/throughput`.
 
 use glam::DVec3;
 

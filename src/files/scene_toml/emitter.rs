@@ -6,6 +6,7 @@ use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::DIRECTION;
 use super::part::EmitterPart;
+use super::suggest;
 use super::table::{Placed, Table};
 use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{
@@ -14,44 +15,48 @@ use crate::emitter::{
 use crate::error::{Diagnostic, Kind};
 use crate::geometry::{COORDINATE, LENGTH};
 
-/// The types with what messages call them.
-const TYPES: [(&str, &str); 5] = [
-    ("photometric", "a photometric [[emitter]]"),
-    ("isotropic", "an isotropic [[emitter]]"),
-    ("collimated", "a collimated [[emitter]]"),
-    ("panel", "a panel [[emitter]]"),
-    ("disc", "a disc [[emitter]]"),
+/// What makes an emitter of its table, its position (m) and its flux (lm), where these are given and good.
+type Reader = fn(&mut Table<'_, '_>, Option<DVec3>, Option<f64>) -> Option<Make<Emitter>>;
+
+/// The types, each with what messages call it and its reader.
+const TYPES: [(&str, (&str, Reader)); 5] = [
+    ("photometric", ("a photometric [[emitter]]", read_photometric)),
+    ("isotropic", ("an isotropic [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_isotropic))),
+    ("collimated", ("a collimated [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_beam))),
+    ("panel", ("a panel [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_panel))),
+    ("disc", ("a disc [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_disc))),
 ];
 
 pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterPart> {
     let unnamed = Placed { value: format!("emitter {}", index + 1), place: table.place() };
     let name = table.text("name").unwrap_or(unnamed);
     names.insert(table.document(), &name, &name.value, index);
-    let words = "\"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"";
-    let (kind, what) =
-        table.needed("type", words, |t, key| t.word(key, &TYPES.map(|meaning| (meaning.0, meaning))))?;
+    let words = suggest::list_quoted(&TYPES.map(|(word, _)| word));
+    let (what, reader) = table.needed("type", &words, |t, key| t.word(key, &TYPES))?;
     table.call(what);
     let position = table.needed_vector("position", &COORDINATE, "[x, y, z] in metres");
     let flux_lm = table.number("flux_lm", &FLUX);
     let colour = read_colour(&mut table);
     let medium_name = table.text("medium");
-    let make = if kind == "photometric" {
-        read_photometric(&mut table, position, flux_lm)
-    } else {
-        let flux_lm = table.needed("flux_lm", FLUX.words, |_, _| flux_lm);
-        let light = position.zip(flux_lm);
-        let emitter = match kind {
-            "isotropic" => {
-                light.and_then(|(p, lm)| table.accept(Isotropic::new(p, lm)).map(Emitter::Isotropic))
-            }
-            "collimated" => read_beam(&mut table, light),
-            "panel" => read_panel(&mut table, light),
-            _ => read_disc(&mut table, light),
-        };
-        emitter.map(made)
-    };
+    let make = reader(&mut table, position, flux_lm);
     table.finish();
     Some(EmitterPart { name: name.value, colour: colour?, make: make?, medium_name, medium: None })
+}
+
+/// An emitter whose flux only the scene says.
+fn of_flux(
+    table: &mut Table<'_, '_>,
+    position: Option<DVec3>,
+    flux_lm: Option<f64>,
+    read: fn(&mut Table<'_, '_>, Light) -> Option<Emitter>,
+) -> Option<Make<Emitter>> {
+    let flux_lm = table.needed("flux_lm", FLUX.words, |_, _| flux_lm);
+    read(table, position.zip(flux_lm)).map(made)
+}
+
+fn read_isotropic(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
+    let (position, flux_lm) = light?;
+    table.accept(Isotropic::new(position, flux_lm)).map(Emitter::Isotropic)
 }
 
 fn read_photometric(

@@ -19,7 +19,33 @@ use crate::surface::{
     Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reference, Reflectance, Tabulated,
 };
 
-const TYPES: [&str; 5] = ["dielectric", "mirror", "lambertian", "absorber", "tabulated"];
+/// What a material's table says beside what it is made of.
+#[derive(Default)]
+struct Aside {
+    /// The direction from which azimuths are counted, where one is given.
+    reference: Option<DVec3>,
+    /// The refractive index of one that can name a medium.
+    ior: Option<f64>,
+}
+
+/// What makes a material of its table.
+type Reader = fn(&mut Table<'_, '_>, &mut Aside) -> Option<Make<Material>>;
+
+/// The types, each with its reader.
+const TYPES: [(&str, Reader); 5] = [
+    ("dielectric", |table, aside| {
+        let dielectric = read_dielectric(table)?;
+        aside.ior = Some(dielectric.ior());
+        Some(made(Material::Dielectric(dielectric)))
+    }),
+    ("mirror", |table, _| read_mirror(table).map(made)),
+    ("lambertian", |table, _| read_lambertian(table).map(made)),
+    ("absorber", |table, _| {
+        table.call("an absorber");
+        Some(made(Material::Absorber))
+    }),
+    ("tabulated", read_tabulated),
+];
 
 const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back), ("both", Sides::Both)];
 
@@ -27,28 +53,17 @@ const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Ene
 
 pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
     if table.word_of("type") == Some("conductor") {
-        let required = format!("{}; conductor is not available yet", suggest::list(&TYPES));
+        let required =
+            format!("{}; conductor is not available yet", suggest::list(&TYPES.map(|(word, _)| word)));
         table.error("type", Kind::Unavailable, &required);
         return None;
     }
-    let required = "\"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"";
-    let kind = table.needed("type", required, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
-    let (mut reference, mut ior) = (None, None);
-    let make = match kind {
-        "dielectric" => read_dielectric(&mut table).map(|dielectric| {
-            ior = Some(dielectric.ior());
-            made(Material::Dielectric(dielectric))
-        }),
-        "mirror" => read_mirror(&mut table).map(made),
-        "lambertian" => read_lambertian(&mut table).map(made),
-        "absorber" => {
-            table.call("an absorber");
-            Some(made(Material::Absorber))
-        }
-        _ => read_tabulated(&mut table, &mut reference),
-    };
+    let required = suggest::list_quoted(&TYPES.map(|(word, _)| word));
+    let reader = table.needed("type", &required, |t, key| t.word(key, &TYPES))?;
+    let mut aside = Aside::default();
+    let make = reader(&mut table, &mut aside);
     table.finish();
-    Some(MaterialPart { make: make?, reference, ior })
+    Some(MaterialPart { make: make?, reference: aside.reference, ior: aside.ior })
 }
 
 fn read_mirror(table: &mut Table<'_, '_>) -> Option<Material> {
@@ -85,8 +100,8 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Dielectric> {
     table.accept(Dielectric::new(ior, ior_outside))
 }
 
-/// What makes the table; `reference` is the direction that azimuths are counted from, where one is given.
-fn read_tabulated(table: &mut Table<'_, '_>, reference: &mut Option<DVec3>) -> Option<Make<Material>> {
+/// What makes the table.
+fn read_tabulated(table: &mut Table<'_, '_>, aside: &mut Aside) -> Option<Make<Material>> {
     table.call("a tabulated material");
     let file = table.path("file");
     let sides = table.word("side", &SIDES).unwrap_or_default();
@@ -95,7 +110,7 @@ fn read_tabulated(table: &mut Table<'_, '_>, reference: &mut Option<DVec3>) -> O
     if along.is_some_and(|v| unit(v).is_none()) {
         table.error("reference", Kind::Range, DIRECTION_REQUIRED);
     }
-    *reference = along.and_then(unit);
+    aside.reference = along.and_then(unit);
     let energy = table.word("energy", &ENERGIES).unwrap_or_default();
     let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
     let file = file?;

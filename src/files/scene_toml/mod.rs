@@ -141,7 +141,9 @@ impl SceneFile {
             match (part.make)(&mut loader) {
                 Ok(emitter) => {
                     scene.at(place).coloured_emitter(part.name, emitter, part.colour);
-                    part.medium.map(|medium| _ = scene.emitter_in(medium));
+                    if let Some(medium) = part.medium {
+                        scene.emitter_in(medium);
+                    }
                 }
                 Err(e) => errors.push(placed(place, e)),
             }
@@ -169,7 +171,9 @@ impl SceneFile {
         }
         if let Some((camera, medium, place)) = parts.camera {
             scene.at(place).camera(camera);
-            medium.map(|medium| _ = scene.camera_in(medium));
+            if let Some(medium) = medium {
+                scene.camera_in(medium);
+            }
         }
         if let Some(medium) = parts.ambient {
             scene.ambient(medium);

@@ -44,6 +44,12 @@ pub fn list(words: &[&str]) -> String {
     }
 }
 
+/// `"\"a\", \"b\" or \"c\""`.
+pub fn list_quoted(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+    list(&quoted.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

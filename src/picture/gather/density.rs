@@ -5,6 +5,8 @@
 //! BSDF, w the photon's weight and K a kernel of integral 1 over the part of the surface within the ball
 //! ([`crate::picture::gather::footprint`]). Photons arriving are flux per area already, so no cosine appears
 //! (H. W. Jensen, Global Illumination Using Photon Maps, 1996).
+//!
+//! This is the entry: photons are added up in `sum`, errors made in `error`.
 
 use std::sync::Arc;
 
