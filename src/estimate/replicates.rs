@@ -18,13 +18,20 @@ pub fn standard_error_of_cell(sum: u64, square: u128, replicates: u32) -> Option
     if sum < FEWEST_HITS {
         return Some(((sum + 1) as f64).sqrt());
     }
-    standard_error_of_total(sum, square, replicates)
+    spread(sum, square, replicates)
 }
 
-/// Standard error of a total over `replicates` replicates, in photons: from the spread, whatever the number
-/// of hits.
+/// Standard error of a total over `replicates` replicates, in photons: from the spread, but no less than one
+/// photon. Points that are evenly spread can give the same count in every replicate, and the flux still lies
+/// between two counts. Few hits owe the error of counting, as in a cell.
 #[inline]
 pub fn standard_error_of_total(sum: u64, square: u128, replicates: u32) -> Option<f64> {
+    standard_error_of_cell(sum, square, replicates).map(|error| error.max(1.0))
+}
+
+/// From the spread alone.
+#[inline]
+fn spread(sum: u64, square: u128, replicates: u32) -> Option<f64> {
     let r = u128::from(replicates);
     if r < 2 {
         return None;
@@ -56,10 +63,11 @@ mod tests {
         assert_eq!(standard_error_of_cell(10, 58, 2), Some(4.0));
         assert_eq!(standard_error_of_cell(12, 50, 4), Some((56.0f64 / 3.0).sqrt()));
         assert_eq!(standard_error_of_total(12, 50, 4), standard_error_of_cell(12, 50, 4));
-        // From ten hits on the spread counts, whatever it is; of totals always.
+        // From ten hits on the spread counts, whatever it is; a total is never surer than one photon.
         assert_eq!(standard_error_of_cell(9, 81, 2), Some(10.0f64.sqrt()));
-        assert_eq!(standard_error_of_total(9, 81, 2), Some(9.0));
+        assert_eq!(standard_error_of_total(9, 81, 2), Some(10.0f64.sqrt()));
         assert_eq!(standard_error_of_cell(10, 50, 2), Some(0.0));
+        assert_eq!(standard_error_of_total(10, 50, 2), Some(1.0));
         assert_eq!(standard_error_of_total(9, 81, 1), None);
         // 2^48 photons in one of 2^16 replicates: exact in 128 bits; beyond, saturated and not wrapped.
         let whole = standard_error_of_total(1 << 48, 1 << 96, 1 << 16).unwrap();
@@ -73,6 +81,6 @@ mod tests {
         assert_eq!(standard_error_of_cell(3, 9, 8), Some(2.0));
         assert_eq!(standard_error_of_cell(100, 10_000, 1), None);
         assert_eq!(standard_error_of_cell(3, 9, 1), None);
-        assert_eq!(standard_error_of_total(0, 0, 8), Some(0.0));
+        assert_eq!(standard_error_of_total(0, 0, 8), Some(1.0));
     }
 }

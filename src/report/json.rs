@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
+use crate::geometry::SurfaceId;
 use crate::run::{Estimate, Outcome, Plan, StoppedBy, warnings};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
@@ -123,12 +124,20 @@ pub struct Accounts<T> {
     pub escaped: T,
     /// Ended by the guard against endless walks.
     pub killed: T,
+    /// Kept for ever by total reflection, by body; absent where there is none.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub trapped: BTreeMap<String, T>,
 }
 
 impl<T> Accounts<T> {
     fn new(scene: &Scene, absorbed: impl Fn(usize) -> T, escaped: T, killed: T) -> Self {
         let surfaces = scene.geometry.surfaces().iter().enumerate();
-        Self { absorbed: surfaces.map(|(i, s)| (s.name.clone(), absorbed(i))).collect(), escaped, killed }
+        Self {
+            absorbed: surfaces.map(|(i, s)| (s.name.clone(), absorbed(i))).collect(),
+            escaped,
+            killed,
+            trapped: BTreeMap::new(),
+        }
     }
 }
 
@@ -205,6 +214,10 @@ impl<'a> Report<'a> {
             let absorbed = |i| of(outcome.absorbed_lm(i));
             Accounts::new(scene, absorbed, of(outcome.escaped_lm()), of(outcome.killed_lm()))
         };
+        let name = |body: &SurfaceId| scene.geometry.surfaces()[body.0 as usize].name.clone();
+        let trapped: BTreeMap<_, _> = ledger.trapped.iter().map(|(body, n)| (name(body), *n)).collect();
+        let trapped_lm =
+            trapped.iter().map(|(n, count)| (n.clone(), *count as f64 * outcome.photon_lm)).collect();
         let photons = outcome.photons as f64;
         let receivers = scene.receivers.iter().zip(statistics).zip(files);
         Self {
@@ -219,13 +232,16 @@ impl<'a> Report<'a> {
             },
             ledger_lm: LedgerReport {
                 emitted: ledger.total_emitted() as f64 * outcome.photon_lm,
-                ended: lumens(&|e| e.value),
+                ended: Accounts { trapped: trapped_lm, ..lumens(&|e| e.value) },
                 standard_error: (outcome.replicates > 1)
                     .then(|| lumens(&|e| e.standard_error.unwrap_or(0.0))),
             },
             ledger_photons: LedgerPhotons {
                 emitted: scene.emitter_names.iter().cloned().zip(ledger.emitted.iter().copied()).collect(),
-                ended: Accounts::new(scene, |i| ledger.absorbed[i], ledger.escaped, ledger.killed),
+                ended: Accounts {
+                    trapped,
+                    ..Accounts::new(scene, |i| ledger.absorbed[i], ledger.escaped, ledger.killed)
+                },
             },
             dimension: DimensionReport {
                 mean: outcome.census.dimension_mean(),

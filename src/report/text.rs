@@ -105,6 +105,9 @@ fn write_ledger(out: &mut String, scene: &Scene, outcome: &Outcome) -> Result {
     if outcome.ledger.killed > 0 {
         line("killed (endless walks)".into(), outcome.killed_lm())?;
     }
+    if outcome.ledger.total_trapped() > 0 {
+        line("trapped in clear bodies".into(), outcome.trapped_lm())?;
+    }
     let [emitted, ended] = [outcome.ledger.total_emitted(), outcome.ledger.total_ended()].map(grouped);
     writeln!(out, "  balance: {emitted} photons emitted, {ended} ended")
 }

@@ -32,7 +32,7 @@ pub struct Outcome {
     pub photon_lm: f64,
     /// Where photons began and ended.
     pub ledger: Ledger,
-    /// Photons absorbed by each surface, escaped, killed.
+    /// Photons absorbed by each surface, escaped, killed, trapped.
     accounts: Moments,
     /// Of every cell, by receiver.
     cells: Vec<Moments>,
@@ -67,7 +67,7 @@ impl Outcome {
             replicates: 0,
             photon_lm: 0.0,
             ledger: Ledger::new(scene.emitters.as_slice().len(), surfaces),
-            accounts: Moments::new(surfaces + 2),
+            accounts: Moments::new(surfaces + 3),
             cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
             totals: Moments::new(scene.receivers.len()),
             turned_away: vec![0; scene.receivers.len()],
@@ -84,7 +84,8 @@ impl Outcome {
         self.replicates += 1;
         self.ledger.merge(ledger);
         self.census.merge(census);
-        self.accounts.absorb(ledger.absorbed.iter().copied().chain([ledger.escaped, ledger.killed]));
+        let others = [ledger.escaped, ledger.killed, ledger.total_trapped()];
+        self.accounts.absorb(ledger.absorbed.iter().copied().chain(others));
         for (receiver, moments) in self.cells.iter_mut().enumerate() {
             moments.absorb(receivers.counts(receiver).iter());
         }
@@ -114,7 +115,7 @@ impl Outcome {
         &self.totals
     }
 
-    /// Photons absorbed by each surface, then those escaped, then those killed.
+    /// Photons absorbed by each surface, then those escaped, then those killed, then those trapped.
     pub fn accounts(&self) -> &Moments {
         &self.accounts
     }
@@ -142,6 +143,11 @@ impl Outcome {
     /// Flux of photons ended by the guard, lm.
     pub fn killed_lm(&self) -> Estimate {
         self.total(&self.accounts, self.ledger.absorbed.len() + 1)
+    }
+
+    /// Flux kept for ever by total reflection, lm.
+    pub fn trapped_lm(&self) -> Estimate {
+        self.total(&self.accounts, self.ledger.absorbed.len() + 2)
     }
 
     fn total(&self, moments: &Moments, at: usize) -> Estimate {

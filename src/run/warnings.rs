@@ -21,6 +21,7 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     let run = Run { scene, outcome, photons: (outcome.photons as f64).max(1.0) };
     let mut all: Vec<Warning> = run.contradicted().collect();
     all.extend(run.lost_in_bodies());
+    all.extend(run.trapped());
     all.extend(run.killed());
     all.extend(run.corrected());
     all.extend(run.turned_away());
@@ -83,6 +84,27 @@ impl Run<'_> {
                 surfaces: vec![name],
                 share: Some(share),
                 remedy: "look for cracks, or for faces that overlap another body's, in its mesh".into(),
+            }
+        })
+    }
+
+    fn trapped(&self) -> impl Iterator<Item = Warning> {
+        self.outcome.ledger.trapped.iter().map(|(&body, &count)| {
+            let (name, share) = (self.name(body), count as f64 / self.photons);
+            let is_measured = self.scene.receivers.iter().any(|receiver| receiver.surface == body);
+            let on_it = if is_measured { "; the receiver on it shows what the limit lets it see" } else { "" };
+            Warning {
+                severity: if is_measured { Severity::Untrusted } else { Severity::Note },
+                code: "trapped",
+                message: format!(
+                    "total reflection keeps {} of all light in \"{name}\" for ever{on_it}",
+                    Self::percent(share)
+                ),
+                surfaces: vec![name],
+                share: Some(share),
+                remedy: "no clear body does that in reality: what it absorbs, or lets out by its roughness, is not in the \
+                         scene"
+                    .into(),
             }
         })
     }

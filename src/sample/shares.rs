@@ -2,7 +2,7 @@
 //!
 //! A cell owns 64-bit fractions in proportion to its flux, row by row. Kept is the first of them only, 8
 //! bytes a cell, and a guide: for the leading bits of a fraction, the cell that owns the first fraction with
-//! those bits. A cell of zero flux owns nothing and has the first fraction of the next one, so of equal first
+//! those bits. A cell of zero flux, or of less than 2^-64 of all, owns nothing and has the first fraction of the next one, so of equal first
 //! fractions the last is the owner's.
 
 use super::angles::Angles;
@@ -20,13 +20,13 @@ pub struct Shares {
     row_low: Vec<u64>,
     row_guide: Vec<u32>,
     row_guide_bits: u32,
-    /// One more a slice than leading bits have values: the last cell of positive flux.
+    /// One more a slice than leading bits have values: the last cell that owns a fraction.
     guide: Vec<u32>,
     guide_bits: u32,
     lasts: Vec<Last>,
 }
 
-/// The last cell of positive flux of a slice; the first cell where there is none.
+/// The last cell of a slice that owns a fraction; the first cell where there is none.
 #[derive(Debug, Clone, Copy)]
 struct Last {
     cell: u32,
@@ -62,8 +62,10 @@ impl Shares {
 
     /// Adds a slice whose cells have these fluxes.
     pub(super) fn push(&mut self, fluxes: &[f64]) {
-        let last = fluxes.iter().rposition(|f| *f > 0.0).unwrap_or(0);
         let widths = integer_widths(fluxes);
+        // A faint cell may own no fraction at all: of several, the last is the last that owns one.
+        let owns = |k: &usize| widths.as_ref().map_or(fluxes[*k] > 0.0, |widths| widths[*k] > 0);
+        let last = (0..fluxes.len()).rev().find(owns).unwrap_or(0);
         let row = last / self.columns;
         self.lasts.push(Last { cell: last as u32, row: row as u32, is_choice: widths.is_some() });
         let (start, first_row) = (self.low.len(), self.row_low.len());
@@ -115,7 +117,7 @@ impl Shares {
         if !last.is_choice {
             return (last.row as usize, Share::ALL);
         }
-        // Rows beyond the last cell of positive flux own nothing.
+        // Rows beyond the last cell that owns a fraction own nothing.
         let low = &self.row_low[slice * self.rows..][..=last.row as usize];
         let guide = &self.row_guide[slice << self.row_guide_bits..][..1 << self.row_guide_bits];
         let mut row = guide[(bits >> (64 - self.row_guide_bits)) as usize] as usize;
@@ -203,6 +205,9 @@ mod tests {
             of(1, 9, |_, j| (j % 4) as f64),
             of(9, 1, |i, _| (i % 4) as f64),
             of(2, 1, |i, _| if i == 0 { 1.0 } else { 1e-30 }),
+            // Faint tails, of which no cell owns a fraction.
+            of(6, 2, |i, _| 1e-12f64.powi(i as i32)),
+            of(3, 4, |i, j| if (i, j) < (1, 1) { 1.0 } else { 1e-25 }),
         ]
     }
 

@@ -1,6 +1,7 @@
 //! Scenes from their parts.
 
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::{Diagnostic, Kind, Place};
@@ -10,7 +11,7 @@ use crate::surface::Material;
 use super::camera::Camera;
 use super::media::{Media, Medium};
 use super::receiver::{Cells, MOST_CELLS, Receiver, ReceiverSpec};
-use super::{Identity, Scene, check, contacts};
+use super::{Identity, Scene, check, contacts, endless};
 
 /// How a surface is joined to those that it touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -195,6 +196,8 @@ impl SceneBuilder {
                 Ok(start) => starts.push(start.in_ambient(ambient)),
                 Err(e) => errors.push(e.placed(place)),
             }
+            let endless = endless::refusal(&name, &emitter, &geometry, &materials);
+            errors.extend(endless.map(|e| e.placed(place)));
             emitter_names.push(name);
             emitters.push(emitter);
             emitter_colours.push(colour);
@@ -211,6 +214,7 @@ impl SceneBuilder {
                 identity: Identity::default(),
                 warnings,
                 media,
+                trap_limit: OnceLock::new(),
                 camera_ambient,
                 materials,
                 starts,

@@ -132,6 +132,11 @@ impl Media {
         at.behind().filter(|surface| matches!(self.role(*surface), Role::Body { .. }))
     }
 
+    /// Whether there is any body.
+    pub fn has_bodies(&self) -> bool {
+        self.roles.iter().any(|role| matches!(role, Role::Body { .. }))
+    }
+
     /// Whether some face may have the same medium on both sides.
     pub fn may_vanish(&self) -> bool {
         self.roles.iter().filter(|role| **role != Role::Solid).count() > 1

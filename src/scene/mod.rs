@@ -7,10 +7,13 @@ pub mod builder;
 pub mod camera;
 pub mod check;
 mod contacts;
+mod endless;
 mod figure;
 pub mod media;
 pub mod receiver;
 pub mod requires;
+
+use std::sync::OnceLock;
 
 use glam::DVec3;
 
@@ -61,6 +64,8 @@ pub struct Scene {
     pub warnings: Vec<Diagnostic>,
     /// What fills the space.
     pub media: Media,
+    /// After how many total reflections in a row light is trapped: found when it is first asked for.
+    pub trap_limit: OnceLock<u32>,
     /// The ambient medium at the camera.
     pub camera_ambient: media::MediumId,
     materials: Vec<Material>,

@@ -105,6 +105,10 @@ impl Model for Dielectric {
         Kind::Specular
     }
 
+    fn keeps_all(&self) -> bool {
+        true
+    }
+
     fn is_coloured(&self) -> bool {
         false
     }

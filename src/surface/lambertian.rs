@@ -38,6 +38,10 @@ impl Model for Lambertian {
         if self.reflectance.luminous() > 0.0 { Kind::Scattering } else { Kind::Absorbing }
     }
 
+    fn keeps_all(&self) -> bool {
+        self.reflectance.by_channel() == [1.0; 3]
+    }
+
     fn is_coloured(&self) -> bool {
         self.reflectance.is_coloured()
     }

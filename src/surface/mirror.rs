@@ -33,6 +33,10 @@ impl Model for Mirror {
         Kind::Specular
     }
 
+    fn keeps_all(&self) -> bool {
+        self.reflectance.by_channel() == [1.0; 3]
+    }
+
     fn is_coloured(&self) -> bool {
         self.reflectance.is_coloured()
     }

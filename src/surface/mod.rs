@@ -165,6 +165,10 @@ pub trait Model {
     fn indices(&self) -> Option<(f64, Option<f64>)> {
         None
     }
+    /// [`Material::keeps_all`].
+    fn keeps_all(&self) -> bool {
+        false
+    }
     /// [`Material::proposals`].
     fn proposals(&self, _at: &Incidence) -> [f64; 2] {
         [0.0; 2]
@@ -206,6 +210,11 @@ impl Material {
     /// Whether light passes into another medium.
     pub fn is_transparent(&self) -> bool {
         self.indices().is_some()
+    }
+
+    /// Whether it absorbs nothing, in any channel.
+    pub fn keeps_all(&self) -> bool {
+        ask!(self, keeps_all())
     }
 
     /// What happens to a photon that arrived, and to what it carries.

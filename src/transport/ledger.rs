@@ -3,6 +3,10 @@
 //! All in integers. Photons are counted in when an emitter starts them and out where they end, so a photon lost in between
 //! shows as an imbalance; nothing is computed as the rest.
 
+use std::collections::BTreeMap;
+
+use crate::geometry::SurfaceId;
+
 use super::walk::End;
 
 /// Photons begun and ended.
@@ -16,12 +20,14 @@ pub struct Ledger {
     pub escaped: u64,
     /// Ended by the guard.
     pub killed: u64,
+    /// Kept for ever by total reflection, by body.
+    pub trapped: BTreeMap<SurfaceId, u64>,
 }
 
 impl Ledger {
     /// An empty ledger for this many emitters and surfaces.
     pub fn new(emitters: usize, surfaces: usize) -> Self {
-        Self { emitted: vec![0; emitters], absorbed: vec![0; surfaces], escaped: 0, killed: 0 }
+        Self { emitted: vec![0; emitters], absorbed: vec![0; surfaces], ..Self::default() }
     }
 
     /// Counts a photon in.
@@ -37,6 +43,7 @@ impl Ledger {
             End::Absorbed(surface) => self.absorbed[surface.0 as usize] += 1,
             End::Escaped | End::Missed => self.escaped += 1,
             End::Killed => self.killed += 1,
+            End::Trapped(body) => *self.trapped.entry(body).or_default() += 1,
         }
     }
 
@@ -47,7 +54,12 @@ impl Ledger {
 
     /// Photons ended.
     pub fn total_ended(&self) -> u64 {
-        self.absorbed.iter().sum::<u64>() + self.escaped + self.killed
+        self.absorbed.iter().sum::<u64>() + self.escaped + self.killed + self.total_trapped()
+    }
+
+    /// Photons kept by total reflection.
+    pub fn total_trapped(&self) -> u64 {
+        self.trapped.values().sum()
     }
 
     /// Whether every photon begun has ended.
@@ -65,18 +77,20 @@ impl Ledger {
         }
         self.escaped += other.escaped;
         self.killed += other.killed;
+        for (body, count) in &other.trapped {
+            *self.trapped.entry(*body).or_default() += count;
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::SurfaceId;
 
     #[test]
     fn a_lost_photon_shows() {
         let mut ledger = Ledger::new(1, 2);
-        for end in [End::Absorbed(SurfaceId(1)), End::Escaped, End::Killed] {
+        for end in [End::Absorbed(SurfaceId(1)), End::Escaped, End::Killed, End::Trapped(SurfaceId(1))] {
             ledger.begin(0);
             assert!(!ledger.is_balanced());
             ledger.end(end);
@@ -84,6 +98,6 @@ mod tests {
         }
         let mut twice = ledger.clone();
         twice.merge(&ledger);
-        assert_eq!((twice.total_emitted(), twice.total_ended(), twice.absorbed[1]), (6, 6, 2));
+        assert_eq!((twice.total_emitted(), twice.total_ended(), twice.absorbed[1]), (8, 8, 2));
     }
 }

@@ -8,6 +8,7 @@ pub mod attempts;
 pub mod census;
 pub mod ledger;
 pub mod parallel;
+pub mod trap;
 pub mod walk;
 
 pub use census::Census;

@@ -5,13 +5,14 @@
 use glam::DVec3;
 
 use crate::emitter::Emission;
-use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
+use crate::geometry::{Body, Hit, Side, SurfaceId, Whereabouts};
 use crate::sample::coordinates::Chooser;
 use crate::scene::Scene;
 use crate::scene::media::Interface;
 use crate::surface::{Event, Grey, Incidence, Throughput};
 
 use super::census::Exceptions;
+use super::trap::{self, Streak};
 
 /// Events after which a photon is taken to be caught for ever and is killed, and counted as such. It is a
 /// guard against scenes that absorb nothing, not a bounce cap: with an albedo of 0.999 one photon in 10^43
@@ -51,6 +52,8 @@ pub enum End {
     Escaped,
     /// It met none at all.
     Missed,
+    /// Total reflection keeps it in this body for ever ([`super::trap`]).
+    Trapped(SurfaceId),
     /// The guard ended it ([`MAX_EVENTS`]).
     Killed,
 }
@@ -60,6 +63,23 @@ pub enum End {
 pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     scene: &Scene,
     emission: Emission,
+    whereabouts: Whereabouts,
+    carried: T,
+    chooser: &mut C,
+    sink: &mut S,
+    exceptions: &mut Exceptions,
+) -> End {
+    let mut streak = Streak::new(trap::limit(scene));
+    walk_until(&mut streak, scene, emission, whereabouts, carried, chooser, sink, exceptions)
+}
+
+/// The same with a limit of its own for total reflections in a row.
+#[inline]
+#[allow(clippy::too_many_arguments)]
+pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
+    streak: &mut Streak,
+    scene: &Scene,
+    emission: Emission,
     mut whereabouts: Whereabouts,
     mut carried: T,
     chooser: &mut C,
@@ -67,8 +87,9 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
     exceptions: &mut Exceptions,
 ) -> End {
     let Emission { mut origin, mut direction, .. } = emission;
-    let mut events = 0;
-    while events < MAX_EVENTS {
+    // Total reflections in a row are counted by themselves: the guard is not for them.
+    let (mut events, mut guarded, mut reflections) = (0, 0, 0);
+    while guarded < MAX_EVENTS {
         let Some(hit) =
             scene.geometry.nearest(origin, direction, &whereabouts, &mut exceptions.skipped_crossings)
         else {
@@ -92,6 +113,9 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
             continue;
         };
         let at = Incidence::of(&hit, direction, indices);
+        // Inside a body, where the medium beyond its face is the thinner one.
+        let is_inside = indices[0] > indices[1] && hit.body != Body::Open;
+        let went_through;
         match scene.material(hit.surface).scatter(&at, chooser, &mut carried) {
             Event::Absorbed => return End::Absorbed(hit.surface),
             Event::BelowHorizon => {
@@ -100,12 +124,23 @@ pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
             }
             Event::Leaves { direction: onward, through, corrected } => {
                 exceptions.corrected_directions += u64::from(corrected);
+                went_through = through;
                 let side = if hit.front == through { Side::Back } else { Side::Front };
                 scene.media.leave(&mut whereabouts, &hit, side);
                 (origin, direction) = (hit.position, onward);
             }
         }
         events += 1;
+        if is_inside && !went_through {
+            reflections += 1;
+            if reflections >= streak.limit {
+                return End::Trapped(hit.surface);
+            }
+        } else {
+            streak.longest_left = streak.longest_left.max(reflections);
+            reflections = 0;
+            guarded += 1;
+        }
     }
     End::Killed
 }

@@ -158,7 +158,7 @@ fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, t
     let c = match end {
         End::Escaped | End::Missed => 1,
         End::Absorbed(_) => 2,
-        End::Killed => panic!("photon {index} was killed"),
+        End::Killed | End::Trapped(_) => panic!("photon {index} was killed"),
     };
     let paper = 3 + specular + 3 * diffuse + c; // (4)
     let fresh = chooser.shared.saturating_sub(1);

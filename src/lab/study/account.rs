@@ -123,7 +123,7 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
                     sink.events.scattered -= 1.0;
                 }
             }
-            End::Escaped | End::Missed | End::Killed => sink.events.end += 1.0,
+            End::Escaped | End::Missed | End::Killed | End::Trapped(_) => sink.events.end += 1.0,
         }
     }
     let (a_photon, arrived) = (|sum: f64| sum / PHOTONS as f64, sink.events);
