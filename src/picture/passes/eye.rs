@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::error::Result;
 use crate::picture::Watch;
-use crate::picture::camera::render::{Rendered, render};
+use crate::picture::camera::render;
+use crate::picture::camera::render::Rendered;
 use crate::picture::camera::{Film, Pass, Sums, View};
 use crate::picture::gather::footprint::Footprints;
 use crate::picture::gather::{Choice, Density, bandwidth};
