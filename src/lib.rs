@@ -86,6 +86,7 @@ use rooms::*;
 pub use rooms::*;
 
 // The door. Errors and warnings:
+pub use error::warning::{Severity, Warning};
 pub use error::{Diagnostic, Invalid, Kind, Place, Result};
 // Photometric files:
 pub use files::lm63::{parse as parse_photometry, read as read_photometry};
@@ -105,11 +106,12 @@ pub use geometry::{
     Sphere, Surface, Transform, Wave, box_mesh,
 };
 pub use scene::camera::{Camera, CameraSpec};
+pub use scene::media::Medium;
 pub use scene::receiver::{ReceiverEvents, ReceiverSide, ReceiverSpec};
-pub use scene::{Scene, SceneBuilder};
+pub use scene::{Joint, Scene, SceneBuilder, SurfaceOptions};
 pub use surface::{Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reflectance, Tabulated};
 // Runs:
-pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace};
+pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace, warnings};
 pub use sequence::Sequence;
 // Results:
 pub use run::{Estimate, Outcome};

@@ -4,7 +4,7 @@ use crate::error::{Diagnostic, Kind};
 use crate::geometry::{Contact, Geometry, SurfaceId};
 use crate::surface::Material;
 
-use super::builder::{Joint, SurfaceOptions};
+use super::options::{Joint, SurfaceOptions};
 
 /// What was found about a pair of surfaces, to be said where the second of them stands in the scene.
 pub(super) type Finding = (SurfaceId, Diagnostic);

@@ -7,7 +7,7 @@
 use crate::geometry::{Geometry, Hit, Met, Side, SurfaceId, Whereabouts};
 use crate::surface::Material;
 
-use super::builder::SurfaceOptions;
+use super::options::SurfaceOptions;
 
 /// Number of a medium in its scene; 0 is the one that the scene lies in.
 pub type MediumId = u16;

@@ -10,6 +10,7 @@ mod contacts;
 mod endless;
 mod figure;
 pub mod media;
+mod options;
 pub mod receiver;
 pub mod requires;
 
@@ -22,9 +23,10 @@ use crate::error::Diagnostic;
 use crate::geometry::{Geometry, SurfaceId, Whereabouts};
 use crate::surface::{self, Material};
 
-pub use builder::{Joint, SceneBuilder, SurfaceOptions};
+pub use builder::SceneBuilder;
 use camera::Camera;
 use media::{Interface, Media};
+pub use options::{Joint, SurfaceOptions};
 use receiver::Receiver;
 
 /// What a run needs to be repeated, beside its settings: where the scene comes from. Empty for one made in code.

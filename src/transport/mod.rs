@@ -13,4 +13,5 @@ pub mod walk;
 
 pub use census::Census;
 pub use ledger::Ledger;
-pub use walk::{Arrival, End, Sink, walk};
+pub use trap::walk;
+pub use walk::{Arrival, End, Sink};

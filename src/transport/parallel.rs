@@ -17,7 +17,8 @@ use crate::surface::Throughput;
 
 use super::census::Census;
 use super::ledger::Ledger;
-use super::walk::{End, Sink, walk};
+use super::trap::walk;
+use super::walk::{End, Sink};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.

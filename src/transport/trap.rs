@@ -6,14 +6,16 @@
 
 use rayon::prelude::*;
 
-use crate::sample::coordinates::Coordinates;
+use crate::emitter::Emission;
+use crate::geometry::Whereabouts;
+use crate::sample::coordinates::{Chooser, Coordinates};
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
 use crate::sequence::independent::IndependentPoints;
-use crate::surface::Grey;
+use crate::surface::{Grey, Throughput};
 
 use super::census::Exceptions;
-use super::walk::{Arrival, End, Sink, walk_until};
+use super::walk::{Arrival, End, Sink, Streak, walk_until};
 
 /// Reflections in a row after which a photon is trapped, whatever the scene.
 const FAR: u32 = 1 << 17;
@@ -23,20 +25,19 @@ const NEAR: u32 = 1 << 12;
 const PROBE: u64 = 4096;
 const PROBE_SEED: u64 = 0x7472_6170;
 
-/// Total reflections in a row.
-#[derive(Debug, Clone, Copy)]
-pub struct Streak {
-    /// A photon of so many is trapped.
-    pub limit: u32,
-    /// The most after which one went on otherwise.
-    pub longest_left: u32,
-}
-
-impl Streak {
-    /// Nothing yet.
-    pub fn new(limit: u32) -> Self {
-        Self { limit, longest_left: 0 }
-    }
+/// Follows one photon from its emission to its end; the chooser decides, the sink sees every arrival.
+#[inline]
+pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
+    scene: &Scene,
+    emission: Emission,
+    whereabouts: Whereabouts,
+    carried: T,
+    chooser: &mut C,
+    sink: &mut S,
+    exceptions: &mut Exceptions,
+) -> End {
+    let mut streak = Streak::new(limit(scene));
+    walk_until(&mut streak, scene, emission, whereabouts, carried, chooser, sink, exceptions)
 }
 
 struct Nowhere;

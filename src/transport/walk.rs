@@ -12,7 +12,6 @@ use crate::scene::media::Interface;
 use crate::surface::{Event, Grey, Incidence, Throughput};
 
 use super::census::Exceptions;
-use super::trap::{self, Streak};
 
 /// Events after which a photon is taken to be caught for ever and is killed, and counted as such. It is a
 /// guard against scenes that absorb nothing, not a bounce cap: with an albedo of 0.999 one photon in 10^43
@@ -43,6 +42,22 @@ pub trait Sink<T = Grey> {
     fn start(&mut self, _weight: f64) {}
 }
 
+/// Total reflections in a row.
+#[derive(Debug, Clone, Copy)]
+pub struct Streak {
+    /// A photon of so many is trapped.
+    pub limit: u32,
+    /// The most after which one went on otherwise.
+    pub longest_left: u32,
+}
+
+impl Streak {
+    /// Nothing yet.
+    pub fn new(limit: u32) -> Self {
+        Self { limit, longest_left: 0 }
+    }
+}
+
 /// How a photon ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
@@ -58,22 +73,8 @@ pub enum End {
     Killed,
 }
 
-/// Follows one photon from its emission to its end; the chooser decides, the sink sees every arrival.
-#[inline]
-pub fn walk<C: Chooser, S: Sink<T>, T: Throughput>(
-    scene: &Scene,
-    emission: Emission,
-    whereabouts: Whereabouts,
-    carried: T,
-    chooser: &mut C,
-    sink: &mut S,
-    exceptions: &mut Exceptions,
-) -> End {
-    let mut streak = Streak::new(trap::limit(scene));
-    walk_until(&mut streak, scene, emission, whereabouts, carried, chooser, sink, exceptions)
-}
-
-/// The same with a limit of its own for total reflections in a row.
+/// Follows one photon from its emission to its end, or to a number of total reflections in a row; the chooser decides, the
+/// sink sees every arrival.
 #[inline]
 #[allow(clippy::too_many_arguments)]
 pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(

@@ -24,7 +24,7 @@ fn top_level() {
         &format!("{LAMP}{good}[[«recever]]\nsurface = \"plate\"\n"),
         Kind::Unknown,
         "the unknown key `recever` in a scene",
-        "emitter, material, surface, receiver, camera, compare or run",
+        "emitter, material, ambient, surface, receiver, camera, compare or run",
     );
     assert_eq!(error.advice(), Some("did you mean `receiver`?"));
     expect(
@@ -125,7 +125,7 @@ fn emitters() {
         &emitter("[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 1]\nflux_lm = 1\n«radius = 2"),
         Kind::Unknown,
         "the unknown key `radius` in an isotropic [[emitter]]",
-        "name, type, position, flux_lm, colour or cct_k",
+        "name, type, position, flux_lm, colour, cct_k or medium",
     );
     assert_eq!(error.advice(), None);
     let beam = "[[emitter]]\ntype = \"collimated\"\nposition = [0, 0, 1]\nflux_lm = 1\n";

@@ -47,16 +47,17 @@ fn a_picture_does_not_make_more_triangles_than_cells_may() {
     assert_eq!(scene.geometry.bounds(), (DVec3::ZERO, DVec3::new(1.0, 1.0, 0.1)));
 }
 
-/// Two plates in one place, a lamp on the first and one inside glass: lines of the parts that are wrong.
+/// Two plates in one place, a lamp on the first and one across a ball of glass: lines of the parts that are wrong.
 const WRONG: &str = r#"[[emitter]]
 name = "on the plate"
 type = "isotropic"
 position = [0.5, 0.25, 0]
 flux_lm = 100
 [[emitter]]
-name = "in the ball"
-type = "isotropic"
+name = "across the ball"
+type = "disc"
 position = [0, 0, 5]
+radius = 2
 flux_lm = 100
 [material.black]
 type = "absorber"
@@ -94,7 +95,7 @@ fn errors_of_the_whole_scene_point_to_the_part_they_are_about() {
     std::fs::write(&scene, WRONG).unwrap();
     let errors = read(&scene).unwrap().build().unwrap_err();
     let places: Vec<_> = errors.iter().map(|e| (e.line(), e.column(), e.kind())).collect();
-    assert_eq!(places, [29, 1, 6].map(|line| (Some(line), Some(1), Kind::Geometry)), "{errors:?}");
+    assert_eq!(places, [30, 1, 6].map(|line| (Some(line), Some(1), Kind::Geometry)), "{errors:?}");
     assert!(errors.iter().all(|e| e.file() == scene.to_str()));
 }
 

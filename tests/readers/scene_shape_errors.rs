@@ -135,7 +135,7 @@ fn shapes() {
         &sphere("1", "«centre = [0, 0, 0]"),
         Kind::Unknown,
         "the unknown key `centre` in a sphere",
-        "name, material, scale, rotate_deg, translate, type, center or radius",
+        "name, material, scale, rotate_deg, translate, contact, priority, type, center or radius",
     );
     assert_eq!(error.advice(), Some("did you mean `center`?"));
 }

@@ -11,6 +11,7 @@ use crate::sequence::independent::IndependentPoints;
 use crate::surface::tabulated::{Energy, Options};
 use crate::surface::tests::Script;
 use crate::surface::{Dielectric, Lambertian, Material, Mirror, Reflectance, Rgb, Tabulated};
+use crate::transport::trap::walk;
 
 /// An arrival: surface, front, events, whether the photon was behind that surface; what it carried.
 type Seen<T> = Vec<((u32, bool, u32, bool), T)>;
