@@ -4,6 +4,7 @@ use crate::error::{Diagnostic, Kind};
 use crate::geometry::{Contact, Geometry, SurfaceId};
 use crate::surface::Material;
 
+use super::facets;
 use super::options::{Joint, SurfaceOptions};
 
 /// What was found about a pair of surfaces, to be said where the second of them stands in the scene.
@@ -70,7 +71,7 @@ fn equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.max(b)
 }
 
-/// Transparent bodies in contact of which the scene does not say how.
+/// Transparent bodies in contact of which the scene does not say how, and curves of flat facets.
 pub(super) fn warnings(
     geometry: &Geometry,
     materials: &[Material],
@@ -87,15 +88,16 @@ pub(super) fn warnings(
             && is_clear(b)
             && options[at(a)].contact.or(options[at(b)].contact).is_none()
     });
-    pairs
-        .map(|contact| {
+    let of_pairs = pairs.map(|contact| {
             let [a, b] = contact.surfaces;
             let found = format!("surfaces \"{}\" and \"{}\" in contact", name(a), name(b));
             let required = "`contact = \"film\"` or `contact = \"glued\"` on one of them; a film of what surrounds them is taken \
                             to lie between them";
             (b, Diagnostic::new(Kind::Geometry, found, required))
-        })
-        .collect()
+        });
+    let clear = (0..materials.len() as u32).map(SurfaceId).filter(|s| materials[at(*s)].is_transparent());
+    let faceted = clear.filter_map(|s| Some((s, facets::warning(&geometry.surfaces()[at(s)])?)));
+    of_pairs.chain(faceted).collect()
 }
 
 /// Whether a surface is joined to all that it touches.

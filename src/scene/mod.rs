@@ -8,6 +8,7 @@ pub mod camera;
 pub mod check;
 mod contacts;
 mod endless;
+mod facets;
 mod figure;
 pub mod media;
 mod options;

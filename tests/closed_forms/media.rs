@@ -4,9 +4,15 @@
 //! T with (1 - T)/T = the sum of R/(1 - R) over them: odds of being sent back add up.
 
 use caustix::error::Diagnostic;
-use caustix::run::{Estimate, Outcome};
-use caustix::scene::Scene;
+use caustix::error::warning::Severity;
+use caustix::geometry::{Mesh, MeshParts, Rectangle, Shape, Smoothing, box_mesh};
+use caustix::run::{Estimate, Outcome, warnings};
+use caustix::scene::receiver::ReceiverSpec;
+use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
+use caustix::surface::{Dielectric, Material};
+use caustix::{AimFrame, Beam, BeamSection, Emitter};
+use glam::DVec3;
 
 use crate::support::judge::assert_total;
 use crate::support::scenes::{run, scene, try_scene};
@@ -94,9 +100,8 @@ fn placed(turn_deg: [f64; 3], by: [f64; 3], contact: &str, order: bool) -> Strin
     let place = format!("rotate_deg = {turn_deg:?}\ntranslate = {by:?}\n");
     let block = slab("block", "glass", 0.0, 0.1, &(contact.to_owned() + "\n" + &place));
     let table = sheet("table", "black", 0.0, true) + &place;
-    let turn = caustix::geometry::Transform::new(glam::DVec3::ONE, turn_deg.into(), by.into()).unwrap();
-    let [from, aim] =
-        [turn.point(glam::DVec3::Z * 2.0), turn.normal(glam::DVec3::NEG_Z)].map(|v| v.to_array());
+    let turn = caustix::geometry::Transform::new(DVec3::ONE, turn_deg.into(), by.into()).unwrap();
+    let [from, aim] = [turn.point(DVec3::Z * 2.0), turn.normal(DVec3::NEG_Z)].map(|v| v.to_array());
     let lamp = format!(
         "[[emitter]]\ntype = \"collimated\"\nposition = {from:?}\naim = {aim:?}\nradius = 0.03\nflux_lm = 1000.0\n"
     );
@@ -335,7 +340,120 @@ fn a_lamp_in_its_dome_and_in_a_tank() {
     let text = [lamp, GLASS, air, BLACK].concat() + &bulb + &room;
     let (outcome, estimate) = flux(&scene(&text), 1 << 12, 4);
     assert_eq!(estimate.value, 1000.0);
-    // The first arrival at the inner face is from air: a part ((n - 1)/(n + 1))^2 = 0.04 turns back there, and meets three
-    // more faces before it is as far again.
     assert!(outcome.ledger.is_balanced());
+}
+
+/// Part of all directions of which every cosine to an axis is below c.
+fn part_within(c: f64) -> f64 {
+    let steps = 2000;
+    let middle = |k: i32| (f64::from(k) + 0.5) / f64::from(steps);
+    let inside = |i: i32, k: i32| {
+        let (z, phi) = (middle(i), 0.5 * std::f64::consts::PI * middle(k));
+        let r = (1.0 - z * z).sqrt();
+        z < c && r * phi.cos() < c && r * phi.sin() < c
+    };
+    let count = (0..steps).map(|i| (0..steps).filter(|k| inside(i, *k)).count()).sum::<usize>();
+    count as f64 / f64::from(steps * steps)
+}
+
+#[test]
+fn a_clear_tank_keeps_the_light_that_it_reflects_totally_at_all_its_walls() {
+    let lamp = "[[emitter]]\ntype = \"isotropic\"\nposition = [0.0, 0.0, 0.001]\nflux_lm = 1000.0\n";
+    let text = [lamp, WATER, BLACK].concat()
+        + &sphere("room", "black", [0.0; 3], 1.0, "")
+        + &cuboid("tank", "water", [-0.2, -0.1, -0.1], [0.2, 0.1, 0.1], "")
+        + &receiver("room");
+    let (outcome, estimate) = flux(&scene(&text), 1 << 11, 4);
+    let kept = 1000.0 * part_within((1.0 - 1.0 / (1.333f64 * 1.333)).sqrt());
+    println!("{kept} lm kept, {:?}, {estimate:?}", outcome.trapped_lm());
+    assert_total("trapped", &outcome, outcome.trapped_lm(), kept);
+    assert_total("in the room", &outcome, estimate, 1000.0 - kept);
+    assert!(outcome.ledger.is_balanced() && outcome.ledger.killed == 0);
+    let said = warnings(&scene(&text), &outcome);
+    assert!(said.iter().any(|w| w.code == "trapped" && w.surfaces == ["tank"]), "{said:?}");
+}
+
+/// The scene of the lamp, a black floor and one mesh of glass.
+fn with_mesh(mesh: Mesh) -> Scene {
+    let mut builder = SceneBuilder::new();
+    let frame = AimFrame::new(DVec3::NEG_Z, None).unwrap();
+    let beam = Beam::new(DVec3::Z * 2.0, frame, BeamSection::Disc { radius: 0.03 }, 1000.0).unwrap();
+    builder.emitter("lamp", Emitter::Beam(beam));
+    builder.surface("mesh", mesh.into(), Material::Dielectric(Dielectric::new(1.5, None).unwrap()));
+    let floor = Rectangle::new(DVec3::new(-0.5, -0.5, -0.5), DVec3::X, DVec3::Y).unwrap();
+    builder.surface("floor", Shape::Rectangle(floor), Material::Absorber);
+    builder.receiver(ReceiverSpec::new("floor", "floor").unwrap().with_cells([1, 1]).unwrap());
+    builder.build().unwrap()
+}
+
+#[test]
+fn a_mesh_wound_inwards_is_the_same_body_and_one_that_cuts_itself_is_the_union_of_its_parts() {
+    let cube = |low: f64, high: f64, half: f64| {
+        box_mesh(DVec3::new(-half, -half, low), DVec3::new(half, half, high)).unwrap()
+    };
+    let of = |mesh: Mesh| flux(&with_mesh(mesh), 1 << 13, 9);
+    let (_, outward) = of(cube(0.0, 0.1, 0.05));
+    let (_, inward) = of(cube(0.0, 0.1, 0.05).reversed());
+    assert_eq!(outward.value, inward.value);
+    // Boxes that cut each other, lie in each other, share a face; all in one mesh.
+    for (low, high, half) in [(0.05, 0.2, 0.04), (0.02, 0.08, 0.04), (0.1, 0.2, 0.05)] {
+        let (a, b) = (cube(0.0, 0.1, 0.05), cube(low, high, half));
+        let first = a.vertices().len() as u32;
+        let parts = MeshParts {
+            vertices: a.vertices().iter().chain(b.vertices()).copied().collect(),
+            triangles: a
+                .triangles()
+                .iter()
+                .copied()
+                .chain(b.triangles().iter().map(|t| t.map(|v| v + first)))
+                .collect(),
+            ..MeshParts::default()
+        };
+        let (mesh, _) = Mesh::new(parts, Smoothing::Flat, true).unwrap();
+        let (outcome, estimate) = of(mesh);
+        assert_total(&format!("{low} to {high}"), &outcome, estimate, 1000.0 * passed(&[1.0, 1.5, 1.0]));
+    }
+}
+
+#[test]
+fn light_that_never_ends_is_refused_and_named() {
+    for material in ["type = \"mirror\"\nreflectance = 1", "type = \"lambertian\"\nreflectance = 1"] {
+        let text = |more: &str| {
+            let lamp = LAMP.replace("[0.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]");
+            format!("{lamp}[material.white]\n{material}\n{GLASS}{BLACK}")
+                + &cuboid("room", "white", [-1.0; 3], [1.0; 3], "")
+                + &sphere("ball", "glass", [0.5, 0.5, 0.5], 0.1, "")
+                + more
+                + &receiver("room")
+        };
+        let refused = refusals(&text(""));
+        assert!(refused.iter().any(|d| d.found().contains("\"room\", where nothing absorbs")), "{refused:?}");
+        assert!(refusals(&text(&sheet("plate", "black", 0.1, true))).is_empty());
+    }
+}
+
+#[test]
+fn a_run_says_what_is_wrong_with_it() {
+    let codes = |text: &str| -> Vec<(&str, Severity)> {
+        let scene = scene(text);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 8, 8, 1);
+        warnings(&scene, &outcome).iter().map(|w| (w.code, w.severity)).collect()
+    };
+    let floor = |more: &str| sheet("floor", "black", 0.0, true) + &receiver("floor") + more;
+    assert_eq!(codes(&([LAMP, BLACK].concat() + &floor(""))), []);
+    // The floor looks down.
+    let turned = [LAMP, BLACK].concat() + &floor("").replace("\"both\"", "\"back\"");
+    assert_eq!(codes(&turned), [("other-side", Severity::Doubtful)]);
+    // The lamp looks up.
+    let up = LAMP.replace("-1.0]", "1.0]");
+    assert_eq!(codes(&([&up, BLACK].concat() + &floor(""))), [("aimed-away", Severity::Doubtful)]);
+    // A pane of two open sheets whose lower one looks up.
+    let pane = |up: bool| {
+        [LAMP, GLASS, BLACK].concat()
+            + &sheet("upper", "glass", 0.4, true)
+            + &sheet("lower", "glass", 0.3, up)
+            + &floor("")
+    };
+    assert_eq!(codes(&pane(false)), []);
+    assert_eq!(codes(&pane(true)), [("contradicted-medium", Severity::Untrusted)]);
 }

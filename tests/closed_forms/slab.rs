@@ -228,7 +228,7 @@ fn total_reflection_begins_within_1e_9_of_the_critical_angle() {
         let theta: f64 = critical + delta;
         // The lamp is below an open water-like surface, on its back, in the dense medium.
         let text = format!(
-            "[[emitter]]\ntype = \"collimated\"\nposition = [{:?}, 0.0, -0.5]\naim = [{:?}, 0.0, {:?}]\nradius = 0.01\nflux_lm = 1.0\n[material.glass]\ntype = \"dielectric\"\nior = {IOR}\n[material.black]\ntype = \"absorber\"\n",
+            "[[emitter]]\ntype = \"collimated\"\nposition = [{:?}, 0.0, -0.5]\naim = [{:?}, 0.0, {:?}]\nradius = 0.01\nflux_lm = 1.0\nmedium = \"glass\"\n[material.glass]\ntype = \"dielectric\"\nior = {IOR}\n[material.black]\ntype = \"absorber\"\n",
             -0.5 * theta.tan(),
             theta.sin(),
             theta.cos()

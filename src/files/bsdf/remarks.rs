@@ -42,7 +42,8 @@ fn below_horizon(lobe: &Lobe) -> Option<Diagnostic> {
         }
     }
     (count > 0).then(|| {
-        let found = format!("{count} values of the {} below the horizon, up to {largest}/sr", noun(lobe));
+        let found =
+            format!("{count} values of the {} below the horizon, up to {}/sr", noun(lobe), short(largest));
         Diagnostic::new(Kind::Range, found, "zero below the horizon").hint("they are taken as zero")
     })
 }
@@ -66,7 +67,8 @@ fn cut_off(lobe: &Lobe) -> Option<Diagnostic> {
         }
     }
     (largest > 0.0 && last_deg < 180.0).then(|| {
-        let found = format!("a {} that ends at {last_deg} degrees with up to {largest}/sr", noun(lobe));
+        let found =
+            format!("a {} that ends at {last_deg} degrees with up to {}/sr", noun(lobe), short(largest));
         Diagnostic::new(Kind::Range, found, "angles up to the horizon")
             .hint("nothing is scattered beyond the last polar angle")
     })
@@ -93,4 +95,9 @@ fn declared(lobe: &Lobe) -> Option<Diagnostic> {
         Diagnostic::new(Kind::Range, found, "agreement within 1 %")
             .hint("the table is used; docs/SCATTERING.md tells what such totals hold")
     })
+}
+
+/// A number without rows of zeros.
+fn short(x: f64) -> String {
+    if x != 0.0 && !(1e-4..1e7).contains(&x) { format!("{x:e}") } else { format!("{x}") }
 }
