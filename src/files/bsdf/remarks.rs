@@ -98,6 +98,6 @@ fn declared(lobe: &Lobe) -> Option<Diagnostic> {
 }
 
 /// A number without rows of zeros.
-fn short(x: f64) -> String {
+fn short(x: f32) -> String {
     if x != 0.0 && !(1e-4..1e7).contains(&x) { format!("{x:e}") } else { format!("{x}") }
 }
