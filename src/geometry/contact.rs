@@ -84,10 +84,9 @@ impl Contacts {
             let face = |p: u32, s: u32| (p - info[s as usize].first_primitive) as usize;
             let facing = match (shape(s).triangle(face(p, s)), shape(t).triangle(face(q, t))) {
                 (Some(a), Some(b)) => {
-                    if s == t && a.iter().any(|v| b.contains(v)) {
-                        return; // Neighbours.
-                    }
-                    if is_body(s) && is_body(t) && cut(&a, &b) {
+                    // Neighbours in a mesh do not cut each other.
+                    let are_neighbours = s == t && a.iter().any(|v| b.contains(v));
+                    if is_body(s) && is_body(t) && !are_neighbours && cut(&a, &b) {
                         found.cuts.push([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
                     }
                     facing(&a, &b)

@@ -18,7 +18,7 @@ pub(super) fn warning(surface: &Surface) -> Option<Diagnostic> {
         return None;
     }
     let (edges, curved, largest) = bends(mesh);
-    if 2 * curved < edges {
+    if curved == 0 || 2 * curved < edges {
         return None;
     }
     let found = format!(

@@ -424,7 +424,7 @@ fn light_that_never_ends_is_refused_and_named() {
                 + &cuboid("room", "white", [-1.0; 3], [1.0; 3], "")
                 + &sphere("ball", "glass", [0.5, 0.5, 0.5], 0.1, "")
                 + more
-                + &receiver("room")
+                + "[[receiver]]\nsurface = \"room\"\nside = \"back\"\n"
         };
         let refused = refusals(&text(""));
         assert!(refused.iter().any(|d| d.found().contains("\"room\", where nothing absorbs")), "{refused:?}");

@@ -122,9 +122,9 @@ fn emitters() {
         "flux_lm = a flux from 1e-9 to 1e12 lm",
     );
     let error = expect(
-        &emitter("[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 1]\nflux_lm = 1\n«radius = 2"),
+        &emitter("[[emitter]]\ntype = \"isotropic\"\nposition = [0, 0, 1]\nflux_lm = 1\n«diameter = 2"),
         Kind::Unknown,
-        "the unknown key `radius` in an isotropic [[emitter]]",
+        "the unknown key `diameter` in an isotropic [[emitter]]",
         "name, type, position, flux_lm, colour, cct_k or medium",
     );
     assert_eq!(error.advice(), None);
