@@ -186,6 +186,12 @@ impl Whereabouts {
         few.contains(&surface) || (few.len() == CAPACITY && self.more.contains(&surface))
     }
 
+    /// Whether, of all closed surfaces, it is behind none, or behind this one alone where it meets that from behind.
+    #[inline(always)]
+    pub fn is_alone(&self, surface: SurfaceId, front: bool) -> bool {
+        if front { self.behind_len == 0 } else { self.behind_len == 1 && self.behind[0] == surface }
+    }
+
     /// Whether it is behind any.
     #[inline(always)]
     pub fn is_behind_any(&self) -> bool {

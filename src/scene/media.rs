@@ -4,7 +4,7 @@
 //! and among equals that of the smallest; in no body it is the ambient medium, which an open transparent surface changes.
 //! (C. M. Schmidt and B. Budge, "Simple nested dielectrics in ray traced images", Journal of Graphics Tools 7 (2), 2002.)
 
-use crate::geometry::{Geometry, Hit, Met, Side, SurfaceId, Whereabouts};
+use crate::geometry::{Body, Geometry, Hit, Met, Side, SurfaceId, Whereabouts};
 use crate::surface::Material;
 
 use super::options::SurfaceOptions;
@@ -145,22 +145,36 @@ impl Media {
     /// What a hit face is between for a photon in this state.
     #[inline]
     pub fn interface(&self, hit: &Hit, at: &Whereabouts) -> Interface {
-        if self.role(hit.surface) == Role::Solid {
-            return Interface::Between([1.0; 2]);
+        match self.role(hit.surface) {
+            Role::Solid => Interface::Between([1.0; 2]),
+            // The usual cases: an open surface alone, and a body alone.
+            Role::Open { media } if hit.touch.is_none() && !at.is_behind_any() => {
+                self.between(at.ambient(), media[usize::from(hit.front)])
+            }
+            Role::Body { medium, .. }
+                if hit.touch.is_none() && hit.body == Body::Simple && at.is_alone(hit.surface, hit.front) =>
+            {
+                let (inside, outside) = (medium, at.ambient());
+                if hit.front { self.between(outside, inside) } else { self.between(inside, outside) }
+            }
+            Role::Open { .. } | Role::Body { .. } => self.of_clear(hit, at),
         }
-        self.of_clear(hit, at)
     }
 
     #[inline]
-    fn of_clear(&self, hit: &Hit, at: &Whereabouts) -> Interface {
-        let own = Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
-        let joint = hit.touch.map_or([None; 2], |touch| touch.joint);
-        let crossed = [Some(own), joint[0], joint[1]];
-        let (before, after) = (self.with(at, &[]), self.with(at, &crossed));
+    fn between(&self, before: MediumId, after: MediumId) -> Interface {
         if before == after {
             return Interface::Nothing;
         }
         Interface::Between([self.media[usize::from(before)].ior, self.media[usize::from(after)].ior])
+    }
+
+    #[inline(never)]
+    fn of_clear(&self, hit: &Hit, at: &Whereabouts) -> Interface {
+        let own = Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
+        let joint = hit.touch.map_or([None; 2], |touch| touch.joint);
+        let crossed = [Some(own), joint[0], joint[1]];
+        self.between(self.with(at, &[]), self.with(at, &crossed))
     }
 
     /// The medium of a state that has crossed these faces as well.

@@ -100,9 +100,17 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
             return if events == 0 { End::Missed } else { End::Escaped };
         };
         sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
-        for joint in scene.geometry.joint_hits(&hit) {
-            let hit = &joint;
-            sink.arrive(&Arrival { hit, direction, events, carried: &carried, whereabouts: &whereabouts });
+        if hit.touch.is_some() {
+            for joint in scene.geometry.joint_hits(&hit) {
+                let hit = &joint;
+                sink.arrive(&Arrival {
+                    hit,
+                    direction,
+                    events,
+                    carried: &carried,
+                    whereabouts: &whereabouts,
+                });
+            }
         }
         if scene.media.is_contradicted(&hit, &whereabouts) {
             *exceptions.contradicted.entry(hit.surface).or_default() += 1;
