@@ -207,10 +207,7 @@ fn coincide(a: &Shape, b: &Shape) -> bool {
 
 /// For triangles in one plane that share area, to the rounding of their corners: whether they look at each other.
 fn facing(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<bool> {
-    let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
-    let (na, nb) = (normal(a), normal(b));
-    let size = a.iter().chain(b).fold(0.0f64, |m, v| m.max(v.abs().max_element()));
-    let rounding = COPLANAR * size;
+    let (na, nb, rounding) = (normal(a), normal(b), rounding(a, b));
     // The plane of the larger one is the better known.
     let (plane, other) = if na.length_squared() >= nb.length_squared() { (a, b) } else { (b, a) };
     let n = normal(plane).try_normalize()?;
@@ -234,11 +231,9 @@ fn facing(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<bool> {
 
 /// Whether an edge of one triangle passes through the inside of the other, by more than the rounding of their corners.
 fn cut(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
-    let size = a.iter().chain(b).fold(0.0f64, |m, v| m.max(v.abs().max_element()));
-    let rounding = COPLANAR * size;
+    let rounding = rounding(a, b);
     let passes = |t: &[DVec3; 3], p: DVec3, q: DVec3| {
-        let normal = (t[1] - t[0]).cross(t[2] - t[0]);
-        let Some(n) = normal.try_normalize() else { return false };
+        let Some(n) = normal(t).try_normalize() else { return false };
         let (from, to) = ((p - t[0]).dot(n), (q - t[0]).dot(n));
         if from.abs() <= rounding || to.abs() <= rounding || (from < 0.0) == (to < 0.0) {
             return false;
@@ -250,6 +245,16 @@ fn cut(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
         })
     };
     (0..3).any(|k| passes(b, a[k], a[(k + 1) % 3]) || passes(a, b[k], b[(k + 1) % 3]))
+}
+
+/// Outward, of twice the triangle's area.
+fn normal(t: &[DVec3; 3]) -> DVec3 {
+    (t[1] - t[0]).cross(t[2] - t[0])
+}
+
+/// By how much corners that are meant to lie in one plane may be off it, m.
+fn rounding(a: &[DVec3; 3], b: &[DVec3; 3]) -> f64 {
+    COPLANAR * a.iter().chain(b).fold(0.0f64, |m, v| m.max(v.abs().max_element()))
 }
 
 fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {

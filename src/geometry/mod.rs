@@ -24,6 +24,7 @@ mod paraboloid;
 mod ray;
 mod rectangle;
 mod shape;
+mod skipped;
 mod sphere;
 mod touching;
 mod transform;
@@ -105,6 +106,12 @@ pub struct Hit {
 }
 
 impl Hit {
+    /// The face that is hit, as a state remembers it.
+    #[inline]
+    pub fn face_met(&self) -> Met {
+        Met { primitive: self.primitive, surface: self.surface, front: self.front, body: self.body }
+    }
+
     /// The side that a ray goes on to which passes unhindered.
     #[inline]
     pub fn other_side(&self) -> Side {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::ray::Ray;
+use super::skipped::Skipped;
 use super::sphere::Root;
 use super::triangle::{Block, Crossing, View, coordinate_error};
 use super::whereabouts::Verdict;
@@ -20,39 +21,6 @@ struct Best {
     /// The triangle, kept from the leaf: fetching it again from the mesh would miss the cache.
     corners: [[f64; 3]; 3],
     view: View,
-}
-
-/// Distances of skipped candidates, kept until it is known which of them lie before the hit.
-struct Skipped {
-    t: [f64; 16],
-    len: usize,
-    surely: u64,
-}
-
-impl Skipped {
-    fn push(&mut self, t: f64, limit: f64) {
-        if self.len == self.t.len() {
-            let mut kept = 0;
-            for i in 0..self.len {
-                if self.t[i] < limit {
-                    self.t[kept] = self.t[i];
-                    kept += 1;
-                }
-            }
-            self.len = kept;
-        }
-        match self.t.get_mut(self.len) {
-            Some(place) => {
-                *place = t;
-                self.len += 1;
-            }
-            None => self.surely += 1,
-        }
-    }
-
-    fn before(&self, t: f64) -> u64 {
-        self.surely + self.t[..self.len].iter().filter(|&&s| s < t).count() as u64
-    }
 }
 
 /// A search along one ray. `LENIENT`: only the far sides of closed surfaces the photon is behind, edges widened by
@@ -86,7 +54,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             best: None,
             nearest_t: f64::INFINITY,
             limit: f32::INFINITY,
-            skipped: Skipped { t: [0.0; 16], len: 0, surely: 0 },
+            skipped: Skipped::new(),
         }
     }
 
@@ -299,7 +267,7 @@ impl Geometry {
         tree: bool,
     ) -> Option<Hit> {
         if let Some((left, next)) = at.in_film() {
-            return Some(self.across_film(origin, left, next));
+            return self.across_film(origin, left, next);
         }
         let ray = Ray::new(origin, direction)?;
         let boxes = BoxRay::new(&ray, &self.normalisation)?;

@@ -49,9 +49,7 @@ impl Geometry {
     /// Whether a point is inside a body; `None` for one on its surface, or next to it.
     fn contains_surely(&self, body: SurfaceId, point: DVec3) -> Option<bool> {
         let shape = &self.surfaces()[body.0 as usize].shape;
-        let bounds = (0..shape.face_count()).map(|face| shape.face_bounds(face));
-        let (low, high) =
-            bounds.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), (a, b)| (l.min(a), h.max(b)));
+        let (low, high) = shape.bounds();
         let near = ON_SURFACE * (high - low).max_element() + 64.0 * f64::EPSILON * point.abs().max_element();
         if point.cmplt(low - near).any() || point.cmpgt(high + near).any() {
             return Some(false);

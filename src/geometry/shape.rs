@@ -126,6 +126,12 @@ impl Shape {
         }
     }
 
+    /// Least and greatest corner of the whole (m).
+    pub(crate) fn bounds(&self) -> (DVec3, DVec3) {
+        let faces = (0..self.face_count()).map(|face| self.face_bounds(face));
+        faces.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), (a, b)| (l.min(a), h.max(b)))
+    }
+
     /// Bytes held.
     pub(crate) fn memory_bytes(&self) -> usize {
         size_of::<Self>()

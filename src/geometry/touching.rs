@@ -38,12 +38,11 @@ impl Geometry {
 
     /// The face that comes next for what stands in a film, having left a face on its front.
     #[cold]
-    pub(super) fn across_film(&self, origin: DVec3, left: u32, next: u32) -> Hit {
+    pub(super) fn across_film(&self, origin: DVec3, left: u32, next: u32) -> Option<Hit> {
         let surface = self.surface_of(next);
         let face = (next - self.info[surface as usize].first_primitive) as usize;
-        let Some([a, b, c]) = self.surfaces[surface as usize].shape.triangle(face) else {
-            unreachable!("only triangles have a film between them")
-        };
+        // Only triangles have a film between them.
+        let [a, b, c] = self.surfaces[surface as usize].shape.triangle(face)?;
         let (ab, ac, to) = (b - a, c - a, origin - a);
         let normal = ab.cross(ac);
         let area2 = normal.length_squared();
@@ -53,9 +52,9 @@ impl Geometry {
         let weights = [v, w];
         let normal = normal.normalize();
         let hit = self.hit_at(next, Crossing { t: 0.0, weights, front: true }, a + ab * v + ac * w, normal);
-        let Some(ray) = Ray::new(hit.position, -normal) else { return hit };
+        let Some(ray) = Ray::new(hit.position, -normal) else { return Some(hit) };
         let hit = self.acting(hit, &ray);
-        self.touching(hit, &ray, Some(self.met(left, true)))
+        Some(self.touching(hit, &ray, Some(self.met(left, true))))
     }
 
     /// Hits on the faces that are crossed at once with the one that is hit.

@@ -134,7 +134,6 @@ impl Whereabouts {
             self.met_len = 0;
         }
         let through = hit.front == (side == Side::Back);
-        let own = Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
         self.next = NO_FACE;
         if let Some(touch) = &hit.touch {
             for other in touch.joint.iter().flatten() {
@@ -148,7 +147,7 @@ impl Whereabouts {
                 }
             }
         }
-        self.leave_face(own, through, hit.touch.is_some());
+        self.leave_face(hit.face_met(), through, hit.touch.is_some());
     }
 
     #[inline]

@@ -126,7 +126,8 @@ impl SceneBuilder {
     ///
     /// # Errors
     /// All that is wrong: names used twice, geometry that cannot be traced, surfaces in one place or bodies that overlap where
-    /// no rule says which is first, an emitter on a surface or across one, a receiver without area or on no surface, too many cells, no flux.
+    /// no rule says which is first, an emitter on a surface or across one, light that never ends, a receiver without area
+    /// or on no surface, too many cells, no flux.
     pub fn build(self) -> Result<Scene, Vec<Diagnostic>> {
         let mut errors = self.names_used_twice();
         let (mut surfaces, mut materials) = (Vec::new(), Vec::new());

@@ -21,9 +21,9 @@ pub(super) fn refusal(
     });
     let around = walls.filter(|id| is_inside(geometry, *id, emitter.position()));
     for wall in around {
-        let within = bounds(&surfaces[wall.0 as usize].shape);
+        let within = surfaces[wall.0 as usize].shape.bounds();
         let others = surfaces.iter().zip(materials);
-        if others.filter(|(s, _)| meet(bounds(&s.shape), within)).all(|(_, material)| material.keeps_all()) {
+        if others.filter(|(s, _)| meet(s.shape.bounds(), within)).all(|(_, material)| material.keeps_all()) {
             let wall = &surfaces[wall.0 as usize].name;
             let found =
                 format!("the light of emitter \"{name}\" inside \"{wall}\", where nothing absorbs any");
@@ -42,11 +42,6 @@ fn is_inside(geometry: &Geometry, surface: SurfaceId, point: DVec3) -> bool {
         Shape::Rectangle(_) | Shape::Sphere(_) | Shape::Paraboloid(_) => false,
     };
     geometry.is_behind(point, surface) != is_inverted
-}
-
-fn bounds(shape: &Shape) -> (DVec3, DVec3) {
-    let faces = (0..shape.face_count()).map(|face| shape.face_bounds(face));
-    faces.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), (a, b)| (l.min(a), h.max(b)))
 }
 
 fn meet(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> bool {

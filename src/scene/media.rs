@@ -110,20 +110,10 @@ impl Media {
         number as MediumId
     }
 
-    /// The medium of this number.
-    pub fn medium(&self, id: MediumId) -> &Medium {
-        &self.media[usize::from(id)]
-    }
-
     /// What a surface is.
     #[inline]
     pub fn role(&self, surface: SurfaceId) -> Role {
         self.roles[surface.0 as usize]
-    }
-
-    /// The medium of this state.
-    pub fn here(&self, at: &Whereabouts) -> MediumId {
-        self.with(at, &[])
     }
 
     /// The bodies that contain what is in this state.
@@ -171,9 +161,8 @@ impl Media {
 
     #[inline(never)]
     fn of_clear(&self, hit: &Hit, at: &Whereabouts) -> Interface {
-        let own = Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
         let joint = hit.touch.map_or([None; 2], |touch| touch.joint);
-        let crossed = [Some(own), joint[0], joint[1]];
+        let crossed = [Some(hit.face_met()), joint[0], joint[1]];
         self.between(self.with(at, &[]), self.with(at, &crossed))
     }
 
@@ -218,9 +207,7 @@ impl Media {
             Role::Solid => false,
             Role::Open { media } => at.ambient() != media[usize::from(!hit.front)],
             Role::Body { outside, .. } => outside.is_some_and(|ior| {
-                let own =
-                    Met { primitive: hit.primitive, surface: hit.surface, front: hit.front, body: hit.body };
-                let crossed = if hit.front { None } else { Some(own) };
+                let crossed = if hit.front { None } else { Some(hit.face_met()) };
                 self.media[usize::from(self.with(at, &[crossed]))].ior != ior
             }),
         }

@@ -118,11 +118,12 @@ impl Scene {
         mut origin: DVec3,
         direction: DVec3,
         mut distance: f64,
-        mut at: Whereabouts,
+        at: &Whereabouts,
     ) -> bool {
         if !self.media.may_vanish() {
-            return self.geometry.occluded(origin, direction, distance, &at);
+            return self.geometry.occluded(origin, direction, distance, at);
         }
+        let mut at = at.clone();
         loop {
             let hit = self.geometry.nearest(origin, direction, &at, &mut 0);
             let Some(hit) = hit.filter(|hit| hit.t < distance) else { return false };

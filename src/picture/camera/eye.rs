@@ -232,7 +232,7 @@ fn direct<R: Chooser>(scene: &Scene, hit: &Hit, wo: Leg, at: &Whereabouts, choos
             continue;
         }
         let start = &sides[usize::from(!wi.front)];
-        if scene.is_hidden(hit.position, light.towards, light.distance_m, start.clone()) {
+        if scene.is_hidden(hit.position, light.towards, light.distance_m, start) {
             continue;
         }
         let illuminance_lx = light.illuminance_lx * light.towards.dot(hit.normal).abs();

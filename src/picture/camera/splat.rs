@@ -206,7 +206,7 @@ impl<'s, const C: usize> Splat<'s, C> {
         }
         let mut whereabouts = arrived.clone();
         self.scene.media.leave(&mut whereabouts, hit, if along > 0.0 { Side::Front } else { Side::Back });
-        self.scene.is_hidden(hit.position, wo, distance, whereabouts)
+        self.scene.is_hidden(hit.position, wo, distance, &whereabouts)
     }
 }
 
