@@ -1,5 +1,8 @@
 //! What a run found: sums over replicates, and the numbers with their standard errors that come of them.
 
+use std::time::Instant;
+
+use crate::error::{Diagnostic, Kind, Result};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
 use crate::tally::{Moments, Receivers};
@@ -13,8 +16,8 @@ use super::plan::Plan;
 pub enum StoppedBy {
     /// All photons are traced.
     Photons,
-    /// It was interrupted; what is here are the replicates finished by then, or, before the first was, the
-    /// first 2^m photons of it.
+    /// It was interrupted; what is here are the first 2^m photons of every replicate. Where replicates are traced one
+    /// after another: those finished by then, or, before the first was, the first 2^m photons of it.
     Interrupt,
 }
 
@@ -79,6 +82,13 @@ impl Outcome {
 
     /// Adds a replicate: its ledger and census, and what its receivers counted.
     pub(super) fn add(&mut self, traced: &Traced, receivers: &Receivers<'_>) {
+        self.add_accounts(traced, receivers);
+        for (receiver, moments) in self.cells.iter_mut().enumerate() {
+            moments.absorb(receivers.counts(receiver).iter());
+        }
+    }
+
+    fn add_accounts(&mut self, traced: &Traced, receivers: &Receivers<'_>) {
         let Traced { ledger, census, .. } = traced;
         self.photons += ledger.total_emitted();
         self.replicates += 1;
@@ -86,23 +96,55 @@ impl Outcome {
         self.census.merge(census);
         let others = [ledger.escaped, ledger.killed, ledger.total_trapped()];
         self.accounts.absorb(ledger.absorbed.iter().copied().chain(others));
-        for (receiver, moments) in self.cells.iter_mut().enumerate() {
-            moments.absorb(receivers.counts(receiver).iter());
-        }
         for (sum, count) in self.turned_away.iter_mut().zip(receivers.turned_away().iter()) {
             *sum += count;
         }
-        self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).iter().sum()));
+        self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).total()));
+    }
+
+    /// Takes replicates that have come equally far, each with its receivers, in the place of what there was.
+    pub(super) fn replace<'a>(
+        &mut self,
+        replicas: impl Iterator<Item = (&'a Traced, &'a Receivers<'a>)> + Clone,
+    ) {
+        self.clear_accounts();
+        for (traced, receivers) in replicas.clone() {
+            self.add_accounts(traced, receivers);
+        }
+        for (receiver, moments) in self.cells.iter_mut().enumerate() {
+            let counts: Vec<_> = replicas.clone().map(|(_, receivers)| receivers.counts(receiver)).collect();
+            moments.replace(&counts);
+        }
+    }
+
+    /// The run is over: what it found, or that it found nothing.
+    ///
+    /// # Errors
+    /// An interrupt before there was a result, for which it takes `fewest` photons.
+    pub(super) fn finished(mut self, scene: &Scene, started: Instant, fewest: u64) -> Result<Self> {
+        if self.photons == 0 {
+            return Err(Diagnostic::new(
+                Kind::Interrupted,
+                format!("an interrupt before the first {fewest} photons were traced"),
+                "at least these for a result",
+            ));
+        }
+        self.photon_lm = scene.emitters.flux_lm() / self.photons as f64;
+        self.trace_s = started.elapsed().as_secs_f64();
+        Ok(self)
     }
 
     /// Nothing again.
     pub(super) fn clear(&mut self) {
+        self.clear_accounts();
+        self.cells.iter_mut().for_each(Moments::clear);
+    }
+
+    fn clear_accounts(&mut self) {
         (self.photons, self.replicates, self.census) = (0, 0, Census::default());
         self.turned_away.fill(0);
         self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
-        for moments in self.cells.iter_mut().chain([&mut self.accounts, &mut self.totals]) {
-            moments.clear();
-        }
+        [&mut self.accounts, &mut self.totals].into_iter().for_each(Moments::clear);
     }
 
     /// Photons counted in the cells of each receiver, row by row from the top left, or face by face.

@@ -1,135 +1,137 @@
-//! The loop over replicates and their stages.
+//! All replicates of a run, advanced together.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use crate::error::{Diagnostic, Kind, Result};
+use rayon::prelude::*;
+
+use crate::error::Result;
 use crate::scene::Scene;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
+use super::in_turn::trace_by;
 use super::outcome::{Outcome, StoppedBy};
 use super::plan::Plan;
 use super::tracer::Tracer;
 
+/// Most counters of all replicates together: 2^27 of 8 bytes, a gibibyte.
+const MOST_COUNTERS: u64 = 1 << 27;
+
+/// Photons of the first stage, over all replicates.
+const FIRST_STAGE: u64 = 1 << 13;
+
+/// A stage is summed up for an interrupt to fall back on when it has this many photons for each counter: a photon
+/// takes some hundred times as long as the sum over a counter, so that all sums take about a percent of the time.
+const PHOTONS_PER_COUNTER: f64 = 0.125;
+
 /// Traces a scene by a plan, on the current rayon pool. Setting `interrupt` ends the run early; `progress` is
 /// told numbers of photons as they are done.
 ///
+/// All replicates advance together, doubling what there is, so that an interrupted run has error bars. They are traced
+/// one after another where [`together`] says no.
+///
 /// # Errors
-/// Interrupted before any photon was traced; a ledger that does not balance (a defect of the program, never
-/// of the data).
+/// Interrupted before there was a result; a ledger that does not balance (a defect of the program, never of the data).
 pub fn trace(
     scene: &Scene,
     plan: &Plan,
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    trace_by(
-        scene,
-        plan,
-        |tracer, end, receivers| tracer.trace(end, receivers, interrupt, progress),
-        interrupt,
-    )
-}
-
-/// A run whose photons go through other hands: [`trace`] for pictures.
-///
-/// `stage(tracer, end, receivers)` is called for each range of photons in turn, replicate by replicate
-/// ([`Tracer::points`]). It takes the tracer on to photon number `end` ([`Tracer::trace_into`], in as many
-/// steps as it likes), adds every arrival to `receivers` once, and gives what the steps traced. Where that is
-/// not complete (an interrupt) the run ends without it: of the first replicate the stages before it count, of
-/// any other none.
-///
-/// # Errors
-/// Those of [`trace`] and of `stage`.
-pub fn trace_by(
-    scene: &Scene,
-    plan: &Plan,
-    mut stage: impl FnMut(&mut Tracer<'_>, u64, &Receivers<'_>) -> Result<Traced>,
-    interrupt: &AtomicBool,
-) -> Result<Outcome> {
+    if !together(scene, plan) {
+        let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
+            tracer.trace(end, receivers, interrupt, progress)
+        };
+        return trace_by(scene, plan, stage, interrupt);
+    }
     let started = Instant::now();
-    let mut receivers = Receivers::new(&scene.geometry, &scene.receivers);
+    let mut replicas: Vec<Replica<'_>> =
+        (0..plan.replicates()).map(|r| Replica::new(scene, plan, r)).collect();
     let mut outcome = Outcome::new(scene, plan);
-    'run: for replicate in 0..plan.replicates() {
-        let mut replica = Traced::new(scene);
-        let (seed, n) = (plan.seed(), plan.photons_per_replicate());
-        let mut tracer = Tracer::new(scene, plan.algorithm(), seed, replicate, n);
-        for end in stages(plan, replicate) {
-            let traced = stage(&mut tracer, end, &receivers)?;
-            if !traced.complete {
-                outcome.stopped_by = StoppedBy::Interrupt;
-                break 'run;
-            }
-            replica.merge(&traced);
-            if replicate == 0 {
-                outcome.clear();
-                outcome.add(&replica, &receivers);
-            }
+    let counters = counters(scene, plan) as f64;
+    let stages = stages(plan);
+    for (i, &end) in stages.iter().enumerate() {
+        // Threads that one replicate leaves idle go on with the next.
+        replicas.par_iter_mut().try_for_each(|replica| replica.trace(end, interrupt, progress))?;
+        if replicas.iter().any(|replica| !replica.traced.complete) {
+            outcome.stopped_by = StoppedBy::Interrupt;
+            break;
         }
-        if replicate > 0 {
-            outcome.add(&replica, &receivers);
+        let is_last = i + 1 == stages.len();
+        let photons = end * u64::from(plan.replicates());
+        let is_over = is_last || interrupt.load(Ordering::Relaxed);
+        if i == 0 || is_over || photons as f64 >= PHOTONS_PER_COUNTER * counters {
+            outcome.replace(replicas.iter().map(|replica| (&replica.traced, &replica.receivers)));
         }
-        receivers.clear();
-        if interrupt.load(Ordering::Relaxed) && replicate + 1 < plan.replicates() {
+        if is_over && !is_last {
             outcome.stopped_by = StoppedBy::Interrupt;
             break;
         }
     }
-    if outcome.photons == 0 {
-        return Err(Diagnostic::new(
-            Kind::Interrupted,
-            format!("an interrupt before the first {} photons were traced", first_stage(plan)),
-            "at least these for a result",
-        ));
+    outcome.finished(scene, started, stages[0] * u64::from(plan.replicates()))
+}
+
+/// Whether the replicates of a run advance together: unless their maps take more than a gibibyte, or the points are
+/// made for their number, so that a first part of them is no sample.
+pub fn together(scene: &Scene, plan: &Plan) -> bool {
+    counters(scene, plan) <= MOST_COUNTERS && !plan.algorithm().sequence.needs_number()
+}
+
+/// Counters of all replicates.
+fn counters(scene: &Scene, plan: &Plan) -> u64 {
+    let cells: u64 = scene.receivers.iter().map(|receiver| receiver.cells.len() as u64).sum();
+    cells.saturating_mul(u64::from(plan.replicates()))
+}
+
+/// A replicate as far as it is traced.
+struct Replica<'s> {
+    tracer: Tracer<'s>,
+    receivers: Receivers<'s>,
+    traced: Traced,
+}
+
+impl<'s> Replica<'s> {
+    fn new(scene: &'s Scene, plan: &Plan, replicate: u32) -> Self {
+        let (seed, n) = (plan.seed(), plan.photons_per_replicate());
+        Self {
+            tracer: Tracer::new(scene, plan.algorithm(), seed, replicate, n),
+            receivers: Receivers::new(&scene.geometry, &scene.receivers),
+            traced: Traced::new(scene),
+        }
     }
-    outcome.photon_lm = scene.emitters.flux_lm() / outcome.photons as f64;
-    outcome.trace_s = started.elapsed().as_secs_f64();
-    Ok(outcome)
+
+    fn trace(&mut self, end: u64, interrupt: &AtomicBool, progress: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let more = self.tracer.trace(end, &self.receivers, interrupt, progress)?;
+        self.traced.merge(&more);
+        Ok(())
+    }
 }
 
-/// Photons of the first stage of the first replicate.
-const FIRST_STAGE: u64 = 1 << 10;
-
-/// Photons of the first stage of the first replicate: all of it where the points are made for their number.
-fn first_stage(plan: &Plan) -> u64 {
+/// The numbers of photons of a replicate at which a run pauses, each twice the one before: a first part of them is a
+/// net of 2^m points, while within a stage the order follows the first coordinate, so that a part of it would be a part
+/// of the emitter's directions, not a sample of them.
+fn stages(plan: &Plan) -> Vec<u64> {
     let n = plan.photons_per_replicate();
-    if plan.algorithm().sequence.needs_number() { n } else { n.min(FIRST_STAGE) }
-}
-
-/// The numbers of photons at which the tracing of a replicate pauses.
-///
-/// Within a range the order follows the first coordinate, so a part of it is a part of the emitter's
-/// directions, not a sample of them. The first replicate is therefore traced in ranges that double what there
-/// is: each end is that of a net of 2^m points, and an interrupted run falls back on the last. Later
-/// replicates count only as a whole.
-fn stages(plan: &Plan, replicate: u32) -> Vec<u64> {
-    let n = plan.photons_per_replicate();
-    let first = if replicate == 0 { first_stage(plan) } else { n };
-    std::iter::successors(Some(first), |end| (*end < n).then(|| n.min(2 * end))).collect()
+    let share = FIRST_STAGE.div_ceil(u64::from(plan.replicates())).next_power_of_two().max(32);
+    std::iter::successors(Some(n.min(share)), |end| (*end < n).then(|| n.min(2 * end))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::{Algorithm, Settings};
-    use crate::sequence::Sequence;
+    use crate::run::Settings;
 
     #[test]
-    fn the_first_replicate_doubles_and_the_others_are_traced_whole() {
-        let plan = |n: u64, sequence: Sequence| {
-            let algorithm = Algorithm { sequence, ..Algorithm::default() };
-            let settings = Settings { photons: Some(2 * n), replicates: Some(2), algorithm, seed: 1 };
-            Plan::new(&settings).unwrap()
+    fn stages_double_from_a_first_one_that_all_replicates_share() {
+        let of = |n: u64, replicates: u32| {
+            let photons = Some(n * u64::from(replicates));
+            let settings = Settings { photons, replicates: Some(replicates), ..Settings::default() };
+            stages(&Plan::new(&settings).unwrap())
         };
-        let of = |n, replicate| stages(&plan(n, Sequence::SobolOwen), replicate);
-        assert_eq!(of(1 << 13, 0), [1 << 10, 1 << 11, 1 << 12, 1 << 13]);
-        assert_eq!(of(5000, 0), [1024, 2048, 4096, 5000]);
-        assert_eq!((of(1000, 0), of(1024, 0)), (vec![1000], vec![1024]));
-        assert_eq!(of(5000, 1), [5000]);
-        let numbered = Sequence::ALL.into_iter().find(|s| s.needs_number() && s.is_randomised());
-        if let Some(sequence) = numbered {
-            assert_eq!(stages(&plan(5000, sequence), 0), [5000]);
-        }
+        assert_eq!(of(1 << 13, 8), [1 << 10, 1 << 11, 1 << 12, 1 << 13]);
+        assert_eq!(of(5000, 6), [2048, 4096, 5000]);
+        assert_eq!((of(1000, 8), of(1024, 8)), (vec![1000], vec![1024]));
+        assert_eq!(of(100, 1 << 12), [32, 64, 100]);
     }
 }

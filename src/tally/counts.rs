@@ -2,6 +2,11 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use rayon::prelude::*;
+
+/// Cells that one task sums: large enough that its bookkeeping costs nothing.
+const CHUNK: usize = 1 << 14;
+
 /// Counters that any number of threads add to. Integer addition commutes, so the order does not matter.
 #[derive(Debug, Default)]
 pub struct Counts(Vec<AtomicU64>);
@@ -21,6 +26,11 @@ impl Counts {
     /// All counts.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = u64> + '_ {
         self.0.iter().map(|c| c.load(Ordering::Relaxed))
+    }
+
+    /// Sum of all counts.
+    pub fn total(&self) -> u64 {
+        self.0.par_chunks(CHUNK).map(|part| part.iter().map(|c| c.load(Ordering::Relaxed)).sum::<u64>()).sum()
     }
 
     /// Sets every counter to zero.
@@ -55,6 +65,20 @@ impl Moments {
         }
     }
 
+    /// Takes the counts of these replicates in the place of what there was.
+    pub fn replace(&mut self, replicates: &[&Counts]) {
+        let sums = self.sum.par_chunks_mut(CHUNK).zip(self.square.par_chunks_mut(CHUNK));
+        sums.enumerate().for_each(|(chunk, (sums, squares))| {
+            let first = chunk * CHUNK;
+            for (i, (sum, square)) in sums.iter_mut().zip(squares).enumerate() {
+                let counts = replicates.iter().map(|counts| counts.0[first + i].load(Ordering::Relaxed));
+                (*sum, *square) = counts.fold((0, 0), |(sum, square), count| {
+                    (sum + count, square + u128::from(count) * u128::from(count))
+                });
+            }
+        });
+    }
+
     /// Zeros again.
     pub fn clear(&mut self) {
         self.sum.fill(0);
@@ -76,6 +100,21 @@ mod tests {
         assert_eq!(moments.square, [3 << 120, 34, 49]);
         moments.clear();
         assert_eq!(moments, Moments::new(3));
+    }
+
+    #[test]
+    fn moments_of_replicates_are_those_of_one_after_another() {
+        let cells = CHUNK + 5;
+        let replicates: Vec<Counts> = (0..3).map(|_| Counts::new(cells)).collect();
+        for (r, counts) in replicates.iter().enumerate() {
+            (0..cells).for_each(|cell| counts.add(cell, ((cell * 7 + r * 13) % 31) as u64));
+        }
+        let (mut at_once, mut in_turn) = (Moments::new(cells), Moments::new(cells));
+        at_once.sum.fill(9);
+        at_once.replace(&replicates.iter().collect::<Vec<_>>());
+        replicates.iter().for_each(|counts| in_turn.absorb(counts.iter()));
+        assert_eq!(at_once, in_turn);
+        assert_eq!(replicates[1].total(), replicates[1].iter().sum::<u64>());
     }
 
     #[test]

@@ -5,8 +5,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use caustix::emitter::{Emitter, Isotropic};
 use caustix::error::Kind;
 use caustix::geometry::Rectangle;
-use caustix::run::{Outcome, Plan, Settings, StoppedBy, trace};
+use caustix::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace};
+use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneBuilder};
+use caustix::sequence::Sequence;
 use caustix::surface::Material;
 use glam::DVec3;
 
@@ -17,6 +19,7 @@ fn lamp_over_floor() -> Scene {
     let lamp = Emitter::Isotropic(Isotropic::new(DVec3::Z, 1000.0).unwrap());
     let mut scene = SceneBuilder::new();
     scene.surface("floor", floor.into(), Material::Absorber).emitter("lamp", lamp);
+    scene.receiver(ReceiverSpec::new("floor", "floor").unwrap().with_cells([8, 8]).unwrap());
     scene.build().unwrap()
 }
 
@@ -49,12 +52,27 @@ fn an_interrupt_in_the_first_replicate_leaves_light_in_all_directions() {
 }
 
 #[test]
-fn an_interrupt_in_a_later_replicate_leaves_the_finished_ones() {
-    let settings = Settings { photons: Some(1 << 20), replicates: Some(4), ..Settings::default() };
-    let outcome = interrupted_after((2 << 18) + 1, &settings).unwrap();
-    assert_eq!((outcome.stopped_by, outcome.replicates), (StoppedBy::Interrupt, 2));
+fn an_interrupt_leaves_all_replicates_as_far_as_they_had_come() {
+    let settings = |photons| Settings { photons: Some(photons), replicates: Some(4), ..Settings::default() };
+    let outcome = interrupted_after((2 << 18) + 1, &settings(1 << 20)).unwrap();
+    assert_eq!((outcome.stopped_by, outcome.replicates), (StoppedBy::Interrupt, 4));
     assert_eq!((outcome.photons, outcome.ledger.total_emitted()), (2 << 18, 2 << 18));
-    assert_eq!(outcome.accounts().sum[0], outcome.ledger.absorbed[0]);
+    assert!(outcome.absorbed_lm(0).standard_error.is_some_and(|error| error > 0.0));
+    // The same photons as those of a run that asks for no more.
+    let plan = Plan::new(&settings(2 << 18)).unwrap();
+    let whole = trace(&lamp_over_floor(), &plan, &AtomicBool::new(false), &|_| {}).unwrap();
+    assert_eq!((outcome.accounts(), outcome.cells()), (whole.accounts(), whole.cells()));
+    assert_eq!((outcome.photon_lm, whole.stopped_by), (whole.photon_lm, StoppedBy::Photons));
+}
+
+#[test]
+fn points_made_for_their_number_are_traced_one_replicate_after_another() {
+    let sequence = Sequence::ALL.into_iter().find(|s| s.needs_number() && s.is_randomised()).unwrap();
+    let algorithm = Algorithm { sequence, ..Algorithm::default() };
+    let settings = Settings { photons: Some(1 << 18), replicates: Some(4), algorithm, ..Settings::default() };
+    let outcome = interrupted_after((2 << 16) + 1, &settings).unwrap();
+    assert_eq!((outcome.stopped_by, outcome.replicates), (StoppedBy::Interrupt, 2));
+    assert_eq!((outcome.photons, outcome.accounts().sum[0]), (2 << 16, outcome.ledger.absorbed[0]));
 }
 
 #[test]
