@@ -35,6 +35,12 @@ pub trait Chooser {
     /// Whether an event of this probability happens. Probabilities at or beyond 0 and 1 decide themselves and
     /// cost nothing.
     fn happens(&mut self, probability: f64) -> bool;
+    /// Whether a photon goes on that does so with this probability: an event of which there may be any number in a row.
+    #[inline]
+    fn survives(&mut self, probability: f64) -> bool {
+        self.happens(probability)
+    }
+
     /// A continuous coordinate in [0, 1).
     fn uniform(&mut self, purpose: Purpose) -> f64;
 

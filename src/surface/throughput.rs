@@ -38,7 +38,7 @@ pub enum Fate {
 /// The event itself: scattered with this probability, else what becomes of the rest.
 #[inline]
 fn fate<C: Chooser>(probability: f64, shares: [f64; 3], rest_goes_on: bool, chooser: &mut C) -> Fate {
-    match (chooser.happens(probability), rest_goes_on) {
+    match (chooser.survives(probability), rest_goes_on) {
         (true, _) => Fate::Scattered(shares),
         (false, true) => Fate::GoesOn,
         (false, false) => Fate::Ends,
@@ -57,7 +57,7 @@ impl Throughput for Grey {
 
     #[inline(always)]
     fn reflect<C: Chooser>(&mut self, reflectance: &Reflectance, chooser: &mut C) -> bool {
-        chooser.happens(reflectance.luminous())
+        chooser.survives(reflectance.luminous())
     }
 
     #[inline(always)]
@@ -97,7 +97,7 @@ impl Throughput for Rgb {
         let reflected = product(self.weight, reflectance.by_channel());
         // Divided by the weight's own luminance, so that rounding does not add up over reflections.
         let q = luminance(reflected) / luminance(self.weight);
-        if !chooser.happens(q) {
+        if !chooser.survives(q) {
             return false;
         }
         self.weight = reflected.map(|w| w / q);

@@ -72,19 +72,21 @@ impl Sink for Watch<'_> {
 /// A photon's coordinates with a record of the questions: how many had two answers, and the bits that the answers spent.
 struct Recorded<'p, P> {
     coordinates: Coordinates<'p, P>,
+    index: u64,
     /// Events with two outcomes.
     events: u32,
     /// Coordinates that the 24-bit rule gives those events, when they share.
     shared: u32,
     spent_bits: f64,
+    /// How often survivals went on by a number that is no coordinate.
+    independent: u32,
     scatter: u32,
     /// Whether the last event with two outcomes did not happen.
     refused_last: bool,
 }
 
-impl<P: Points> Chooser for Recorded<'_, P> {
-    fn happens(&mut self, probability: f64) -> bool {
-        let happened = self.coordinates.happens(probability);
+impl<P: Points> Recorded<'_, P> {
+    fn record(&mut self, probability: f64, happened: bool) {
         if probability > 0.0 && probability < 1.0 {
             self.events += 1;
             if self.shared == 0 || self.spent_bits > SPENDABLE_BITS {
@@ -94,7 +96,25 @@ impl<P: Points> Chooser for Recorded<'_, P> {
             self.spent_bits -= if happened { probability } else { 1.0 - probability }.log2();
             self.refused_last = !happened;
         }
+    }
+}
+
+impl<P: Points> Chooser for Recorded<'_, P> {
+    fn happens(&mut self, probability: f64) -> bool {
+        let happened = self.coordinates.happens(probability);
+        self.record(probability, happened);
         happened
+    }
+
+    fn survives(&mut self, probability: f64) -> bool {
+        // The last four of a block of 2^k indices go on by a number that is no coordinate.
+        if self.shared > 0 && self.spent_bits > f64::from(self.index.max(1).ilog2()) - 2.0 {
+            self.spent_bits = 0.0;
+            self.independent += 1;
+        }
+        let survived = self.coordinates.survives(probability);
+        self.record(probability, survived);
+        survived
     }
 
     fn uniform(&mut self, purpose: Purpose) -> f64 {
@@ -119,7 +139,7 @@ struct Totals {
     paper: u64,
     bound: u64,
     total_reflections: u64,
-    fresh: u64,
+    independent: u64,
     longest: u32,
 }
 
@@ -128,8 +148,16 @@ fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, t
     let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates).unwrap();
     let emitted_with = emission_account(scene, emitter, reuse);
     assert_eq!(coordinates.drawn(), emitted_with, "photon {index}: emission");
-    let mut chooser =
-        Recorded { coordinates, events: 0, shared: 0, spent_bits: 0.0, scatter: 0, refused_last: false };
+    let mut chooser = Recorded {
+        coordinates,
+        index,
+        events: 0,
+        shared: 0,
+        spent_bits: 0.0,
+        independent: 0,
+        scatter: 0,
+        refused_last: false,
+    };
     let mut watch = Watch { scene, seen: Arrivals::default() };
     let end = follow(scene, emission, emitter, &mut chooser, &mut watch);
     let seen = watch.seen;
@@ -176,7 +204,7 @@ fn check_photon<P: Points>(scene: &Scene, points: &P, index: u64, reuse: bool, t
     totals.paper += u64::from(paper);
     totals.bound += u64::from(bound);
     totals.total_reflections += u64::from(seen.total_reflections);
-    totals.fresh += u64::from(fresh);
+    totals.independent += u64::from(chooser.independent);
     totals.longest = totals.longest.max(drawn);
     drawn
 }
@@ -223,13 +251,13 @@ fn check_scene(name: &str, scene: &Scene, photons: u64) -> [Totals; 2] {
         }
         let mean = |sum: u64| sum as f64 / photons as f64;
         println!(
-            "{name}, {}: drawn {:.3} a photon, at most {}, eq. (4) {:.3}, bound (6) {:.3}, fresh {:.4}",
+            "{name}, {}: drawn {:.3} a photon, at most {}, eq. (4) {:.3}, bound (6) {:.3}, independent {:.4}",
             if reuse { "reuse" } else { "plain" },
             mean(totals.drawn),
             totals.longest,
             mean(totals.paper),
             mean(totals.bound),
-            mean(totals.fresh)
+            mean(totals.independent)
         );
         totals
     })
@@ -307,13 +335,13 @@ fn a_diffuse_sphere_from_inside() {
     let (n, mean) = (f64::from(1 << 13), 2.0 + 3.0 * 4.0 + 1.0);
     assert!((plain.drawn as f64 / n - mean).abs() < 4.0 * 3.0 * (20.0 / n).sqrt());
 
-    // Long paths through glass spend more than the 40 bits of one coordinate: the 24-bit rule is at work.
+    // Long paths through glass spend what the coordinate has for survivals: the rule of the last survivors is at work.
     let ball = Shape::Sphere(Sphere::new(DVec3::new(0.0, 0.0, -0.4), 0.4).unwrap());
     let glass = Material::Dielectric(Dielectric::new(1.5, 1.0).unwrap());
     let lamp = table_lamp("spot.ies", DVec3::new(0.0, 0.1, 0.5));
     let long = scene(vec![sphere(0.99), surface("ball", ball, glass)], vec![lamp, point(inside, 500.0)]);
     let [reuse, _] = check_scene("white sphere, glass ball", &long, 1 << 11);
-    assert!(reuse.fresh > 0, "no photon needed a fresh coordinate");
+    assert!(reuse.independent > 0, "no photon was among the last survivors");
 }
 
 #[test]
@@ -330,7 +358,7 @@ fn a_mirror_box_with_a_block_of_glass() {
         &scene(vec![mirror("box", 1.0, 0.98), block], vec![lamp()]),
         1 << 12,
     );
-    assert!(reuse.total_reflections > 0 && reuse.fresh > 0);
+    assert!(reuse.total_reflections > 0 && reuse.independent > 0);
     // Perfect mirrors and perfect white surfaces draw nothing for the event.
     let open = vec![
         mirror("block", 0.4, 1.0),

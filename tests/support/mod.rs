@@ -6,6 +6,7 @@
 pub mod angles;
 pub mod caustic_views;
 pub mod cells;
+pub mod coverage;
 pub mod data;
 pub mod density;
 pub mod given;

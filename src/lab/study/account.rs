@@ -103,7 +103,7 @@ fn count<P: Points>(scene: &Scene, points: &P) -> Events {
     let (mut seen, mut sink) = (Events::default(), Arrivals { scene, events: Events::default() });
     for index in 0..PHOTONS {
         let mut chooser =
-            Watched { inner: Coordinates::new(points, index, true), seen: &mut seen, span: None };
+            Watched { inner: Coordinates::new(points, index, true), index, seen: &mut seen, span: None };
         let Some((emitter, emission)) = scene.emitters.emit(Sampling::default(), &mut chooser.inner) else {
             continue;
         };
@@ -166,12 +166,20 @@ impl<T> Sink<T> for Arrivals<'_> {
 /// Passes questions on and counts them.
 struct Watched<'p, P> {
     inner: Coordinates<'p, P>,
+    index: u64,
     seen: &'p mut Events,
     /// Probability of what was decided on the coordinate in use; `None` before the first.
     span: Option<f64>,
 }
 
 impl<P: Points> Watched<'_, P> {
+    fn decided(&mut self, probability: f64, happened: bool) {
+        if probability > 0.0 && probability < 1.0 {
+            self.seen.decisions += 1.0;
+            self.share(if happened { probability } else { 1.0 - probability });
+        }
+    }
+
     /// An event of this probability on the coordinate of all events.
     fn share(&mut self, probability: f64) {
         // Of 64 bits 24 must be left: 40 may be spent.
@@ -186,11 +194,18 @@ impl<P: Points> Watched<'_, P> {
 impl<P: Points> Chooser for Watched<'_, P> {
     fn happens(&mut self, probability: f64) -> bool {
         let happened = self.inner.happens(probability);
-        if probability > 0.0 && probability < 1.0 {
-            self.seen.decisions += 1.0;
-            self.share(if happened { probability } else { 1.0 - probability });
-        }
+        self.decided(probability, happened);
         happened
+    }
+
+    fn survives(&mut self, probability: f64) -> bool {
+        // The last survivors go on by a number that is no coordinate.
+        if self.span.is_some_and(|span| span * 2f64.powi((self.index | 1).ilog2() as i32) < 4.0) {
+            self.span = Some(1.0);
+        }
+        let survived = self.inner.survives(probability);
+        self.decided(probability, survived);
+        survived
     }
 
     fn uniform(&mut self, purpose: Purpose) -> f64 {
