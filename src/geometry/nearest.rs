@@ -296,19 +296,29 @@ impl Geometry {
         skipped: &mut u64,
         tree: bool,
     ) -> Option<Best> {
-        let only = match &best {
-            None => None,
-            Some(b) => {
-                let entered = at.surface_left().filter(|&s| s.0 != b.surface && at.is_behind(s));
-                let Some(left) = entered else { return best };
-                let mut search = Search::<false>::new(self, rays, at, Some(left));
-                self.run(&mut search, tree);
-                if search.best.is_some() {
-                    return best;
-                }
-                Some(left)
+        let Some(far) = best else { return self.far_side(None, None, rays, at, skipped, tree) };
+        // Of those entered at this very place, the last one as a rule, each must have a far side ahead.
+        let mut best = best;
+        for entered in at.entered_here().filter(|s| s.0 != far.surface) {
+            let mut search = Search::<false>::new(self, rays, at, Some(entered));
+            self.run(&mut search, tree);
+            if search.best.is_none() {
+                best = self.far_side(best, Some(entered), rays, at, skipped, tree);
             }
-        };
+        }
+        best
+    }
+
+    /// The far side within rounding of a closed surface, or of any, if it comes before the best hit so far.
+    fn far_side(
+        &self,
+        best: Option<Best>,
+        only: Option<SurfaceId>,
+        rays: (&Ray, &BoxRay),
+        at: &Whereabouts,
+        skipped: &mut u64,
+        tree: bool,
+    ) -> Option<Best> {
         let mut search = Search::<true>::new(self, rays, at, only);
         self.run(&mut search, tree);
         match (best, search.best) {

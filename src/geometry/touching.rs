@@ -6,7 +6,7 @@ use super::contact::{Partner, covers};
 use super::ray::Ray;
 use super::triangle::Crossing;
 use super::whereabouts::Verdict;
-use super::{Geometry, Hit, Met, SurfaceId, Touch, Whereabouts};
+use super::{Body, Geometry, Hit, Met, SurfaceId, Touch, Whereabouts};
 
 impl Geometry {
     /// A hit on a surface that touches others: the face among those here that comes first, with those that go with it.
@@ -27,7 +27,12 @@ impl Geometry {
             }
         }
         hit = self.acting(hit, ray);
-        let beyond = |(partner, _): &(&Partner, Crossing)| !partner.is_joint;
+        // Through an edge, within rounding, the body beyond may have been entered already.
+        let beyond = |(partner, _): &(&Partner, Crossing)| {
+            let surface = SurfaceId(partner.surface);
+            let is_in = self.info[partner.surface as usize].body == Body::Simple && at.is_behind(surface);
+            !partner.is_joint && !is_in
+        };
         let film = if hit.front {
             None
         } else {

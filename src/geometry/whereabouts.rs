@@ -157,7 +157,9 @@ impl Whereabouts {
         let mut n = usize::from(self.met_len);
         // Between two faces in contact each may be met again and again.
         let known = if between { self.met[..n].iter().position(|m| m.primitive == primitive) } else { None };
+        let mut had_emerged = false;
         if let Some(known) = known {
+            had_emerged = self.met[known].emerged;
             self.met.copy_within(known + 1..n, known);
             n -= 1;
         }
@@ -166,7 +168,7 @@ impl Whereabouts {
             n -= 1;
         }
         let closed = body != Body::Open;
-        let emerged = closed && !front && side == Side::Front;
+        let emerged = closed && side == Side::Front && (!front || had_emerged);
         self.met[n] = Left { primitive, surface, side, emerged };
         self.met_len = n as u8 + 1;
         match (body, side) {
@@ -206,6 +208,17 @@ impl Whereabouts {
     /// The surface just left.
     pub fn surface_left(&self) -> Option<SurfaceId> {
         self.met[..usize::from(self.met_len)].last().map(|m| m.surface)
+    }
+
+    /// The closed surfaces among those met at this place that the photon is behind, the last one first.
+    #[inline]
+    pub(crate) fn entered_here(&self) -> impl Iterator<Item = SurfaceId> + '_ {
+        let met = &self.met[..usize::from(self.met_len)];
+        let behind = |(i, m): (usize, &Left)| {
+            let again = met[i + 1..].iter().any(|later| later.surface == m.surface);
+            (!again && self.is_behind(m.surface)).then_some(m.surface)
+        };
+        met.iter().enumerate().rev().filter_map(behind)
     }
 
     /// The face just left, and the one in contact with it that comes next.

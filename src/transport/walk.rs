@@ -42,22 +42,6 @@ pub trait Sink<T = Grey> {
     fn start(&mut self, _weight: f64) {}
 }
 
-/// Total reflections in a row.
-#[derive(Debug, Clone, Copy)]
-pub struct Streak {
-    /// A photon of so many is trapped.
-    pub limit: u32,
-    /// The most after which one went on otherwise.
-    pub longest_left: u32,
-}
-
-impl Streak {
-    /// Nothing yet.
-    pub fn new(limit: u32) -> Self {
-        Self { limit, longest_left: 0 }
-    }
-}
-
 /// How a photon ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
@@ -73,12 +57,12 @@ pub enum End {
     Killed,
 }
 
-/// Follows one photon from its emission to its end, or to a number of total reflections in a row; the chooser decides, the
-/// sink sees every arrival.
+/// Follows one photon from its emission to its end, or to `trapped_after` total reflections in a row; the chooser decides,
+/// the sink sees every arrival.
 #[inline]
 #[allow(clippy::too_many_arguments)]
 pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
-    streak: &mut Streak,
+    trapped_after: u32,
     scene: &Scene,
     emission: Emission,
     mut whereabouts: Whereabouts,
@@ -88,7 +72,8 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
     exceptions: &mut Exceptions,
 ) -> End {
     let Emission { mut origin, mut direction, .. } = emission;
-    // Total reflections in a row are counted by themselves: the guard is not for them.
+    // Total reflections in a row are counted by themselves: the guard is not for them. Crossings at which nothing happens
+    // are no events, but guarded: no rounding at an edge may keep a photon.
     let (mut events, mut guarded, mut reflections) = (0, 0, 0);
     while guarded < MAX_EVENTS {
         let Some(hit) =
@@ -119,6 +104,7 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
             // The same medium on both sides.
             scene.media.leave(&mut whereabouts, &hit, hit.other_side());
             origin = hit.position;
+            guarded += 1;
             continue;
         };
         let at = Incidence::of(&hit, direction, indices);
@@ -142,11 +128,10 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
         events += 1;
         if is_inside && !went_through {
             reflections += 1;
-            if reflections >= streak.limit {
+            if reflections >= trapped_after {
                 return End::Trapped(hit.surface);
             }
         } else {
-            streak.longest_left = streak.longest_left.max(reflections);
             reflections = 0;
             guarded += 1;
         }
