@@ -1,8 +1,13 @@
 //! What is said beside the numbers of scenes that are drawn wrong, and that nothing is said beside the same drawn right.
 
+use std::sync::atomic::AtomicBool;
+
 use caustix::error::warning::{Severity, Warning};
 use caustix::geometry::{Mesh, MeshParts, Rectangle, Shape, Smoothing};
-use caustix::run::warnings;
+use caustix::picture::{Watch, trace_picture};
+use caustix::report::json::Report;
+use caustix::report::statistics::ReceiverStatistics;
+use caustix::run::{Plan, Settings, warnings};
 use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
 use caustix::surface::{Dielectric, Material};
@@ -327,4 +332,51 @@ fn wet_between(text: &str) -> String {
             "name = \"upper\"\ntype = \"rectangle\"\nmaterial = \"glass\"",
             "name = \"upper\"\ntype = \"rectangle\"\nmaterial = \"wet\"",
         )
+}
+
+#[test]
+fn receivers_on_bodies_that_trap_light_are_marked() {
+    let text = [BLACK, WATER, &lamp([0.0, 0.0, 0.001], 1000.0)].concat()
+        + &sphere("room", "black", [0.0; 3], 1.0, "")
+        + &cuboid("tank", "water", [-0.2, -0.1, -0.1], [0.2, 0.1, 0.1], "")
+        + "[[receiver]]\nname = \"walls\"\nsurface = \"room\"\nside = \"back\"\n[[receiver]]\nname = \"it\"\nsurface = \"tank\"\nside = \"back\"\n";
+    let scene = scene(&text);
+    let outcome = run_with_killed(&scene, Sequence::SobolOwen, 1 << 7, 2, 1);
+    let statistics: Vec<_> =
+        scene.receivers.iter().enumerate().map(|(i, r)| ReceiverStatistics::new(&outcome, r, i)).collect();
+    let files = [Vec::new(), Vec::new()];
+    let json = serde_json::to_value(Report::new(&scene, &outcome, &statistics, &files, 0.0)).unwrap();
+    assert!(json["receivers"][0].get("untrusted").is_none());
+    assert_eq!(json["receivers"][1]["untrusted"], serde_json::json!(["trapped"]));
+}
+
+#[test]
+fn eye_paths_that_are_contradicted_are_counted_and_told() {
+    // The camera looks up from under water, and does not say so: the surface fills the middle of its 60 degrees.
+    let pond = |medium: &str| {
+        [BLACK, WATER, &lamp([0.0, 0.0, 2.0], 1000.0)].concat()
+            + &rectangle("water", "water", [[-0.1, -0.1, 1.0], [0.2, 0.0, 0.0], [0.0, 0.2, 0.0]])
+            + &rectangle("floor", "black", [[-0.1, -0.1, 0.0], [0.2, 0.0, 0.0], [0.0, 0.2, 0.0]])
+            + &receiver("floor")
+            + &format!(
+                "[camera]\nposition = [0.0, 0.0, 0.8]\nlook_at = [0.0, 0.0, 1.0]\nup = [0.0, 1.0, 0.0]\nfov_deg = 60\npixels = [64, 64]\nsamples = 4\nmethod = \"splat\"\n{medium}"
+            )
+    };
+    let scene = scene(&pond(""));
+    let watch = Watch { interrupt: &AtomicBool::new(false), photons: &|_| {}, camera: &|_| {} };
+    let plan =
+        Plan::new(&Settings { photons: Some(256), replicates: Some(2), ..Settings::default() }).unwrap();
+    let (_, picture) = trace_picture(&scene, &plan, false, watch).unwrap();
+    let said = caustix::picture::warnings(&scene, picture.summary());
+    let found = only(&said, "contradicted-medium", Severity::Untrusted, &["water"]);
+    println!("{found}");
+    // A square of 0.2 m at 0.2 m, in a picture 2 tan 30 degrees high: (0.5 / tan 30)^2 of it.
+    let exact = 0.75;
+    assert!((found.share.unwrap() - exact).abs() < 0.01, "{found}");
+    assert!(found.message.contains("of all eye paths") && found.remedy.contains("`medium`"), "{found}");
+    // A probe of fewer pixels sees the same.
+    let probed = caustix::picture::probe(&scene).unwrap();
+    assert!((probed[0].share.unwrap() - exact).abs() < 0.02, "{probed:?}");
+    let right = crate::support::scenes::scene(&pond("medium = \"water\"\n"));
+    assert_eq!(caustix::picture::probe(&right).unwrap(), []);
 }
