@@ -110,6 +110,9 @@ pub struct CheckArgs {
     /// As JSON.
     #[arg(long)]
     pub json: bool,
+    /// Exit with 4 where a warning says that a number would be wrong (severity "untrusted").
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// A whole number given on the command line; `LOW` and `HIGH` are for the message, and are enforced where the number is

@@ -1,17 +1,23 @@
-//! `caustix check SCENE.toml`: everything that can be known without tracing.
+//! `caustix check SCENE.toml`: everything that can be known without tracing, and what a few thousand photons find.
+
+use std::cmp::Reverse;
+use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
 
 use crate::emitter::Emits;
-use crate::error::Diagnostic;
+use crate::error::warning::{Severity, Warning};
+use crate::error::{Diagnostic, Result};
 use crate::geometry::Shape;
 use crate::picture;
 use crate::report::json::json;
 use crate::report::numbers::digits;
+use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
-use super::{CheckArgs, Done, exit, print, render, warn};
+use super::render::{say_found, strictly};
+use super::{CheckArgs, Done, exit, print, render, say, warn};
 
 #[derive(Debug, Default, Serialize)]
 struct Check {
@@ -25,6 +31,28 @@ struct Check {
     memory_mb: f64,
     warnings: Vec<String>,
     errors: Vec<ErrorCheck>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    probe: Option<Probe>,
+}
+
+/// What a run of few photons says: absent where it says nothing.
+#[derive(Debug, Serialize)]
+struct Probe {
+    photons: u64,
+    warnings: Vec<Warning>,
+}
+
+/// Photons of the probe.
+const PHOTONS: u64 = 4096;
+
+/// What a run of this scene would say of itself, to a few photons and eye paths; what was found without them, too.
+fn probe(scene: &Scene) -> Result<Vec<Warning>> {
+    let settings = Settings { photons: Some(PHOTONS), replicates: Some(1), ..Settings::default() };
+    let outcome = trace(scene, &Plan::new(&settings)?, &AtomicBool::new(false), &|_| {})?;
+    let mut said = warnings(scene, &outcome);
+    said.extend(picture::probe(scene)?);
+    said.sort_by_key(|warning| Reverse(warning.severity));
+    Ok(said)
 }
 
 #[derive(Debug, Serialize)]
@@ -67,7 +95,7 @@ struct ErrorCheck {
 }
 
 impl Check {
-    fn of_scene(scene: &Scene) -> Self {
+    fn of_scene(scene: &Scene, said: &[Warning]) -> Self {
         let surfaces = scene.geometry.surfaces().iter().map(|s| {
             let (triangles, open_edges) = match &s.shape {
                 Shape::Mesh(mesh) => (mesh.triangles().len(), mesh.topology().open_edges),
@@ -113,6 +141,7 @@ impl Check {
             memory_mb: memory_bytes as f64 / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
+            probe: (!said.is_empty()).then(|| Probe { photons: PHOTONS, warnings: said.to_vec() }),
         }
     }
 
@@ -162,13 +191,31 @@ pub fn run(args: &CheckArgs) -> Done {
         picture::check(&scene)?;
         Ok(scene)
     });
+    let ready = ready.and_then(|scene| Ok((probe(&scene)?, scene)));
     if args.json {
-        let check = ready.as_ref().map_or_else(|errors| Check::of_errors(errors), Check::of_scene);
+        let check = ready
+            .as_ref()
+            .map_or_else(|errors| Check::of_errors(errors), |(said, scene)| Check::of_scene(scene, said));
         print(&json(&check)?);
-        return Ok(if check.ok { exit::DONE } else { exit::WRONG });
+        let said = ready.iter().flat_map(|(said, _)| said);
+        return Ok(if check.ok { strictly(args.strict, exit::DONE, said) } else { exit::WRONG });
     }
-    let scene = ready?;
+    let (said, scene) = ready?;
     warn(&scene.warnings);
-    print(&Check::of_scene(&scene).text(&scene.identity.name));
-    Ok(exit::DONE)
+    for warning in &said {
+        if scene.found.contains(warning) {
+            say_found(warning);
+        } else {
+            say(&format!("warning (found by a probe of {PHOTONS} photons): {warning}"));
+        }
+    }
+    let worst = match said.iter().map(|warning| warning.severity).max() {
+        None => "nothing to warn of",
+        Some(Severity::Note) => "notes only",
+        Some(Severity::Doubtful) => "numbers would be doubtful (see the warnings)",
+        Some(Severity::Untrusted) => "numbers would be wrong (see the warnings)",
+    };
+    print(&Check::of_scene(&scene, &said).text(&scene.identity.name));
+    print(&format!("probe      {PHOTONS} photons: {worst}\n"));
+    Ok(strictly(args.strict, exit::DONE, &said))
 }

@@ -59,7 +59,7 @@ enum Sub {
     Render(RenderArgs),
     /// Say what a photometric file (IES LM-63) holds: flux, maximum, angles, symmetry.
     Photometry(PhotometryArgs),
-    /// Check a scene without tracing it.
+    /// Check a scene: what can be known of it, and what a probe of a few thousand photons finds.
     Check(CheckArgs),
     /// Measure the error of every algorithm variant against a reference (without SCENE: the built-in scene).
     Compare(compare::CompareArgs),

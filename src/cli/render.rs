@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::error::warning::Severity;
+use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::{make_directory, write_bytes};
 use crate::files::scene_toml::{self, RunDefaults};
-use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture};
+use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture, warnings as seen_wrong};
 use crate::plot;
 use crate::report::camera::CameraReport;
 use crate::report::json::{Report, json};
@@ -42,6 +42,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let started = Instant::now();
     let (scene, run) = load(args.scene.as_deref())?;
     warn(&scene.warnings);
+    scene.found.iter().for_each(say_found);
     picture::check(args, &scene)?;
     let asked = count("--photons", args.photons.as_ref())?.or(run.photons);
     let plan = plan(args, &run, asked)?;
@@ -82,15 +83,16 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     }
     let total_s = started.elapsed().as_secs_f64();
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
-    report.camera = camera;
+    report.see(camera, picture.as_ref().map_or(Vec::new(), |picture| seen_wrong(&scene, picture.summary())));
     unwritten.extend(write_report(&directory, &report).err());
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
         print(&format!("written to {}\n", directory.display()));
     }
-    let of_run = report.warnings.iter().filter(|warning| warning.code != "scene");
-    of_run.for_each(|warning| say(&format!("warning: {warning}")));
+    // What was known before is said before.
+    let said = |warning: &&Warning| warning.code == "scene" || scene.found.contains(warning);
+    report.warnings.iter().filter(|warning| !said(warning)).for_each(say_found);
     if !unwritten.is_empty() {
         return Err(unwritten);
     }
@@ -104,8 +106,17 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         return Ok(exit::INTERRUPTED);
     }
     let seen = seen_wholly(unseen, &directory);
-    let is_untrusted = report.warnings.iter().any(|warning| warning.severity == Severity::Untrusted);
-    Ok(if seen == exit::DONE && args.strict && is_untrusted { exit::UNTRUSTED } else { seen })
+    Ok(strictly(args.strict, seen, &report.warnings))
+}
+
+pub(super) fn say_found(warning: &Warning) {
+    say(&format!("warning: {warning}"));
+}
+
+/// The exit code, or with --strict that of a number which is wrong.
+pub(super) fn strictly<'a>(is_strict: bool, done: u8, said: impl IntoIterator<Item = &'a Warning>) -> u8 {
+    let is_untrusted = said.into_iter().any(|warning| warning.severity == Severity::Untrusted);
+    if done == exit::DONE && is_strict && is_untrusted { exit::UNTRUSTED } else { done }
 }
 
 /// Writes the files of one receiver; their names. Files written before one that cannot be stay.
@@ -170,8 +181,10 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
     let unseen = picture.summary().pixels_unseen;
     let directory = beside_earlier(&args.output, unseen > 0, |_| true)?;
     let camera = picture::write(&directory, scene, plan, spec, &picture)?;
-    let report = SavedReport::new(scene, plan, map, camera, started.elapsed().as_secs_f64());
+    let said = seen_wrong(scene, picture.summary());
+    let report = SavedReport::new(scene, plan, map, (camera, &said), started.elapsed().as_secs_f64());
     write_report(&directory, &report)?;
+    said.iter().for_each(say_found);
     if !args.quiet {
         let (name, map) = (&scene.identity.name, map.display());
         print(&format!("scene      {name}\nphotons    those saved in {map}; "));
@@ -179,7 +192,8 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
         print(&report.camera.text());
         print(&format!("written to {}\n", directory.display()));
     }
-    Ok(seen_wholly(unseen, &directory))
+    let seen = seen_wholly(unseen, &directory);
+    Ok(strictly(args.strict, seen, said.iter().chain(&scene.found)))
 }
 
 /// The picture of photons from a file.

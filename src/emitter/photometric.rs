@@ -39,6 +39,8 @@ pub struct Photometric {
     flux_lm: f64,
     /// Candela per unit of the grid's value.
     scale: f64,
+    /// The longest side of the file's luminous opening, m.
+    opening_m: f64,
     /// Of references: directions uniform in solid angle, with weights.
     uniform: Option<Arc<UniformMap>>,
 }
@@ -87,7 +89,8 @@ impl Photometric {
         };
         let axes = grid_axes(photometry.web.photometric_type, frame)?;
         let (scale, position) = (flux_lm / grid.integral(), COORDINATE.vector("position", position)?);
-        Ok(Self { grid: Arc::new(grid), axes, position, flux_lm, scale, uniform: None })
+        let opening_m = photometry.opening.size_m.into_iter().fold(0.0, f64::max);
+        Ok(Self { grid: Arc::new(grid), axes, position, flux_lm, scale, opening_m, uniform: None })
     }
 
     /// The same light for references: directions uniform in solid angle where the table is not zero, with weights (1 on
@@ -98,6 +101,12 @@ impl Photometric {
     pub(super) fn with_weights(&self) -> Result<Self, Invalid> {
         let map = UniformMap::new(&self.grid).map_err(of_file)?;
         Ok(Self { uniform: Some(Arc::new(map)), ..self.clone() })
+    }
+
+    /// The longest side of the luminous opening that the file was measured with, m; 0 where it is a point. Light leaves from
+    /// the point all the same.
+    pub fn opening_m(&self) -> f64 {
+        self.opening_m
     }
 
     /// Luminous intensity towards a direction (unit), cd.

@@ -61,6 +61,15 @@ pub(crate) struct BinaryTree {
     pub order: Vec<u32>,
 }
 
+impl BinaryTree {
+    /// The same tree over other boxes of the same primitives.
+    pub fn with_boxes(&self, boxes: &[Bounds]) -> Self {
+        let mut tree = Self { nodes: self.nodes.clone(), order: self.order.clone() };
+        unite(&mut tree, boxes);
+        tree
+    }
+}
+
 /// Trees deeper than this are replaced by a balanced one, so that the traversal's stack is bounded.
 const MAX_DEPTH: usize = 70;
 /// Below this many primitives a balanced tree is as good.

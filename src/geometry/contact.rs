@@ -8,6 +8,8 @@
 use glam::DVec3;
 
 use super::bvh::{BinaryTree, Bounds};
+use super::coplanar::{facing, normal, rounding};
+use super::nearly::{Near, Nearly};
 use super::ray::Ray;
 use super::triangle::View;
 use super::{Body, Info, Met, Shape, Surface, SurfaceId};
@@ -59,14 +61,13 @@ pub(super) struct Contacts {
     pairs: Vec<Contact>,
     /// Pairs of transparent closed surfaces that cut each other; twice the same for one that cuts itself.
     cuts: Vec<[SurfaceId; 2]>,
+    /// Faces that all but touch.
+    near: Vec<Near>,
 }
-
-/// Coplanar within this many half-ulps of the largest coordinate: the rounding of corners that were rotated and moved.
-const COPLANAR: f64 = 64.0 * 0.5 * f64::EPSILON;
 
 impl Contacts {
     /// The contacts of surfaces bound in these ways; none are looked for without bonds. The tree is that over the boxes of all
-    /// primitives, whose surfaces are `owner`.
+    /// primitives, as wide as [`super::nearly`] wants them, whose surfaces are `owner`.
     pub fn find(
         surfaces: &[Surface],
         info: &[Info],
@@ -76,7 +77,7 @@ impl Contacts {
         if bonds.is_empty() || tree.order.is_empty() {
             return Self::default();
         }
-        let mut found = Self::default();
+        let (mut found, mut nearly) = (Self::default(), Nearly::new(surfaces, info));
         let is_body = |s: u32| bonds[s as usize].is_clear && info[s as usize].body != Body::Open;
         pairs_of_boxes((tree, boxes, owner), is_body, |p, q| {
             let (s, t) = (owner[p as usize], owner[q as usize]);
@@ -89,7 +90,11 @@ impl Contacts {
                     if is_body(s) && is_body(t) && !are_neighbours && cut(&a, &b) {
                         found.cuts.push([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
                     }
-                    facing(&a, &b)
+                    let facing = facing(&a, &b);
+                    if facing.is_none() && s != t {
+                        nearly.consider([s, t], [&a, &b]);
+                    }
+                    facing
                 }
                 (None, None) => coincide(shape(s), shape(t)).then_some(false),
                 _ => None,
@@ -108,6 +113,7 @@ impl Contacts {
         found.pairs.dedup();
         found.cuts.sort_unstable();
         found.cuts.dedup();
+        found.near = nearly.finish();
         found
     }
 
@@ -120,6 +126,11 @@ impl Contacts {
     /// itself.
     pub fn cuts(&self) -> &[[SurfaceId; 2]] {
         &self.cuts
+    }
+
+    /// Pairs of surfaces that all but touch.
+    pub fn near(&self) -> &[Near] {
+        &self.near
     }
 
     /// What is in contact with a primitive.
@@ -205,30 +216,6 @@ fn coincide(a: &Shape, b: &Shape) -> bool {
     }
 }
 
-/// For triangles in one plane that share area, to the rounding of their corners: whether they look at each other.
-fn facing(a: &[DVec3; 3], b: &[DVec3; 3]) -> Option<bool> {
-    let (na, nb, rounding) = (normal(a), normal(b), rounding(a, b));
-    // The plane of the larger one is the better known.
-    let (plane, other) = if na.length_squared() >= nb.length_squared() { (a, b) } else { (b, a) };
-    let n = normal(plane).try_normalize()?;
-    let [least, greatest] = extent(other.iter().map(|v| (*v - plane[0]).dot(n)));
-    if least < -rounding || greatest > rounding {
-        return None;
-    }
-    // No edge of either separates them in the plane (separating axis theorem).
-    for triangle in [a, b] {
-        for k in 0..3 {
-            let across = n.cross(triangle[(k + 1) % 3] - triangle[k]).try_normalize()?;
-            let [a0, a1] = extent(a.iter().map(|v| v.dot(across)));
-            let [b0, b1] = extent(b.iter().map(|v| v.dot(across)));
-            if a1 <= b0 + rounding || b1 <= a0 + rounding {
-                return None;
-            }
-        }
-    }
-    Some(na.dot(nb) < 0.0)
-}
-
 /// Whether an edge of one triangle passes through the inside of the other, by more than the rounding of their corners.
 fn cut(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
     let rounding = rounding(a, b);
@@ -245,18 +232,4 @@ fn cut(a: &[DVec3; 3], b: &[DVec3; 3]) -> bool {
         })
     };
     (0..3).any(|k| passes(b, a[k], a[(k + 1) % 3]) || passes(a, b[k], b[(k + 1) % 3]))
-}
-
-/// Outward, of twice the triangle's area.
-fn normal(t: &[DVec3; 3]) -> DVec3 {
-    (t[1] - t[0]).cross(t[2] - t[0])
-}
-
-/// By how much corners that are meant to lie in one plane may be off it, m.
-fn rounding(a: &[DVec3; 3], b: &[DVec3; 3]) -> f64 {
-    COPLANAR * a.iter().chain(b).fold(0.0f64, |m, v| m.max(v.abs().max_element()))
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
 }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::openings::{opening, parts};
 use crate::error::{Diagnostic, Invalid, Kind};
 
 /// Findings about a mesh whose equal vertices have been welded. Faces go by their numbers in the file, from 1.
@@ -17,6 +18,8 @@ pub struct Topology {
     pub open_edges: usize,
     /// The first open edge: its face and its ends (m).
     pub first_open_edge: Option<(u32, [DVec3; 2])>,
+    /// The area that the loops of open edges span, m2: next to nothing where they are two sides of a crack.
+    pub opening_m2: f64,
     /// Edges of more than two faces.
     pub non_manifold_edges: usize,
     /// A face at a non-manifold edge.
@@ -32,6 +35,9 @@ pub struct Topology {
     parts: usize,
 }
 
+/// Openings of less than this share of a mesh's area are cracks.
+const OF_A_CRACK: f64 = 1e-3;
+
 impl Topology {
     /// Whether it may have more than one layer: several parts, or edges of more than two faces.
     pub(crate) fn is_layered(&self) -> bool {
@@ -41,6 +47,11 @@ impl Topology {
     /// No open edge and every edge run through equally often in both directions: there is an inside.
     pub fn is_closed(&self) -> bool {
         self.triangles > 0 && self.open_edges == 0 && self.inconsistent_edges == 0
+    }
+
+    /// Open, but so little that it was meant to be closed: the loops of its open edges span less than this share of its area.
+    pub(crate) fn is_cracked(&self, area_m2: f64) -> bool {
+        self.open_edges > 0 && self.opening_m2 < OF_A_CRACK * area_m2
     }
 
     /// Takes over what was found later; the list of dropped faces is kept.
@@ -139,6 +150,7 @@ pub(crate) fn inspect(vertices: &[DVec3], triangles: &[[u32; 3]], face_numbers: 
     }
     found.signed_volume_m3 = volume / 6.0;
     uses.sort_unstable_by_key(|u| (u.ends, u.triangle));
+    let mut open: Vec<[u32; 2]> = Vec::new();
     let mut first_open: Option<(u32, [u32; 2])> = None;
     let mut first_many = u32::MAX;
     let mut first_twisted = u32::MAX;
@@ -146,9 +158,11 @@ pub(crate) fn inspect(vertices: &[DVec3], triangles: &[[u32; 3]], face_numbers: 
         let triangle = edge[0].triangle;
         if let [only] = edge {
             found.open_edges += 1;
+            let (p, q) = only.ends;
+            let ends = if only.forward { [p, q] } else { [q, p] };
+            open.push(ends);
             if first_open.is_none_or(|(t, _)| triangle < t) {
-                let (p, q) = only.ends;
-                first_open = Some((triangle, if only.forward { [p, q] } else { [q, p] }));
+                first_open = Some((triangle, ends));
             }
             continue;
         }
@@ -168,27 +182,8 @@ pub(crate) fn inspect(vertices: &[DVec3], triangles: &[[u32; 3]], face_numbers: 
     found.first_inconsistent = number(first_twisted);
     found.duplicates = duplicates(triangles, face_numbers);
     found.parts = parts(vertices.len(), triangles);
+    found.opening_m2 = opening(vertices, &open);
     found
-}
-
-/// Number of parts that share no vertex. (Union by the lower number, with path halving.)
-fn parts(vertices: usize, triangles: &[[u32; 3]]) -> usize {
-    let mut above: Vec<u32> = (0..vertices as u32).collect();
-    let root = |above: &mut Vec<u32>, mut v: u32| {
-        while above[v as usize] != v {
-            above[v as usize] = above[above[v as usize] as usize];
-            v = above[v as usize];
-        }
-        v
-    };
-    for [a, b, c] in triangles {
-        for v in [b, c] {
-            let (p, q) = (root(&mut above, *a), root(&mut above, *v));
-            above[p.max(q) as usize] = p.min(q);
-        }
-    }
-    let used: std::collections::BTreeSet<u32> = triangles.iter().map(|t| root(&mut above, t[0])).collect();
-    used.len()
 }
 
 fn duplicates(triangles: &[[u32; 3]], face_numbers: &[u32]) -> Vec<(u32, u32)> {

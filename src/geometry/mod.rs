@@ -11,6 +11,7 @@
 mod box_mesh;
 mod bvh;
 mod contact;
+mod coplanar;
 mod exact;
 mod height_image;
 mod heightfield;
@@ -18,7 +19,9 @@ mod inside;
 pub mod mesh;
 mod mesh_check;
 mod nearest;
+mod nearly;
 mod noise;
+mod openings;
 mod overlap;
 mod paraboloid;
 mod ray;
@@ -40,6 +43,7 @@ pub use contact::{Bond, Contact, Touch};
 pub use height_image::{HEIGHT, HeightImage};
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
+pub use nearly::Near;
 pub use noise::{MOST_OCTAVES, Noise, Octave, PEAK, RELATIVE};
 pub use paraboloid::Paraboloid;
 pub use rectangle::Rectangle;
@@ -189,7 +193,18 @@ impl Geometry {
             info.is_clear = bond.is_clear;
         }
         let binary = bvh::build(&boxes);
-        let contacts = Contacts::find(&surfaces, &info, bonds, (&binary, &boxes, &owner));
+        let contacts = if bonds.is_empty() {
+            Contacts::default()
+        } else {
+            // What all but touches is looked for, too.
+            let reaches: Vec<f64> = surfaces.iter().map(nearly::reach).collect();
+            for (primitive, (bounds, &i)) in boxes.iter_mut().zip(&owner).enumerate() {
+                let (s, reach) = (&surfaces[i as usize], reaches[i as usize]);
+                let (l, h) = world(s, primitive - info[i as usize].first_primitive as usize);
+                *bounds = normalisation.bounds(l - reach, h + reach);
+            }
+            Contacts::find(&surfaces, &info, bonds, (&binary.with_boxes(&boxes), &boxes, &owner))
+        };
         for contact in contacts.pairs() {
             contact.surfaces.iter().for_each(|s| info[s.0 as usize].touches = true);
         }
@@ -233,6 +248,11 @@ impl Geometry {
     /// Pairs of surfaces in contact.
     pub fn contacts(&self) -> &[Contact] {
         self.contacts.pairs()
+    }
+
+    /// Pairs of surfaces that all but touch, one of them closed.
+    pub fn nearly(&self) -> &[Near] {
+        self.contacts.near()
     }
 
     /// Pairs of transparent closed surfaces whose faces cut each other, the lower number first; twice the same for one that

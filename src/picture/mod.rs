@@ -9,13 +9,14 @@
 //!
 //! The files in the order of use: [`photon_map`] keeps and finds photons; [`gather`] estimates luminance from
 //! them, with error and bias; [`camera`] turns pixels into rays and what they find into a film; [`summary`]
-//! says how good it is; [`passes`] leads photons of a run through all of these.
+//! says how good it is, [`warnings`] what is wrong with it; [`passes`] leads photons of a run through all of these.
 
 pub mod photon_map;
 pub mod gather;
 pub mod camera;
 pub mod summary;
 pub mod passes;
+pub mod warnings;
 
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -33,6 +34,7 @@ use passes::budget::capacity;
 use passes::collector::Collector;
 use photon_map::{Channels, SavedMap};
 pub use summary::{Chosen, PictureSummary};
+pub use warnings::{probe, warnings};
 
 /// A picture of `C` channels: 1 or 3.
 #[derive(Debug)]

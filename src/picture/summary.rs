@@ -1,7 +1,10 @@
 //! How a picture was made and what it cost.
 
+use std::collections::BTreeMap;
+
 use serde::{Serialize, Serializer};
 
+use crate::geometry::SurfaceId;
 use crate::picture::camera::Film;
 use crate::scene::camera::Method;
 use crate::surface::luminance_of;
@@ -48,6 +51,12 @@ pub struct PictureSummary {
     pub passes: u32,
     /// Eye paths that were ended because they did not end by themselves.
     pub eye_paths_killed: u64,
+    /// Eye paths, one a sample.
+    #[serde(skip)]
+    pub eye_paths: u64,
+    /// Those that reached a surface in another medium than the scene says is there; report.json has a warning of it.
+    #[serde(skip)]
+    pub eye_paths_contradicted: BTreeMap<SurfaceId, u64>,
     /// Splats of a photon that were cut to the largest that is added: the pinhole all but touches a surface.
     pub splats_cut: u64,
     /// Pixels that an interrupt left unseen: black, with an unknown error.

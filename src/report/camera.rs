@@ -104,6 +104,7 @@ mod tests {
             pixels_unseen: 0,
             cost: Cost { median_bias_percent: Some(1.234), median_standard_error_percent: None },
             time_s: 12.345,
+            ..PictureSummary::default()
         };
         let report = CameraReport::new(&spec, &summary, &["camera.exr".into(), "camera.png".into()]);
         for line in [

@@ -7,9 +7,11 @@ use serde::Serialize;
 use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::SurfaceId;
+use crate::run::warnings::TRAPPED;
 use crate::run::{Estimate, Outcome, Plan, StoppedBy, warnings};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
+use crate::scene::receiver::Receiver;
 use crate::transport::census::Exceptions;
 
 use super::camera::CameraReport;
@@ -186,13 +188,19 @@ pub struct ReceiverReport<'a> {
     pub numbers: &'a ReceiverStatistics,
     /// Files written for it.
     pub files: &'a [String],
+    /// Codes of warnings for which its numbers are not to be trusted; absent where there is none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub untrusted: Vec<&'static str>,
 }
+
+/// The code of what was found before the run.
+const SCENE: &str = "scene";
 
 /// What was found before the run, as notes.
 fn of_scene(found: &[Diagnostic]) -> impl Iterator<Item = Warning> {
     found.iter().map(|found| Warning {
         severity: Severity::Note,
-        code: "scene",
+        code: SCENE,
         message: found.to_string(),
         surfaces: Vec::new(),
         share: None,
@@ -220,6 +228,15 @@ impl<'a> Report<'a> {
             trapped.iter().map(|(n, count)| (n.clone(), *count as f64 * outcome.photon_lm)).collect();
         let photons = outcome.photons as f64;
         let receivers = scene.receivers.iter().zip(statistics).zip(files);
+        let warnings: Vec<Warning> =
+            warnings(scene, outcome).into_iter().chain(of_scene(&scene.warnings)).collect();
+        let untrusted = |receiver: &Receiver| {
+            let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize].name;
+            let spoils = |w: &&Warning| {
+                w.code == TRAPPED && w.severity == Severity::Untrusted && w.surfaces.contains(surface)
+            };
+            warnings.iter().filter(spoils).map(|w| w.code).collect()
+        };
         Self {
             run: RunReport::new(scene, &outcome.plan, outcome.photons),
             photons_planned: outcome.plan.photons(),
@@ -254,15 +271,28 @@ impl<'a> Report<'a> {
             },
             exceptions: outcome.census.exceptions.clone(),
             receivers: receivers
-                .map(|((r, numbers), files)| ReceiverReport { name: &r.name, numbers, files })
+                .map(|((r, numbers), files)| ReceiverReport {
+                    name: &r.name,
+                    numbers,
+                    files,
+                    untrusted: untrusted(r),
+                })
                 .collect(),
             camera: None,
             stopped_by: match outcome.stopped_by {
                 StoppedBy::Photons => "photons",
                 StoppedBy::Interrupt => "interrupt",
             },
-            warnings: warnings(scene, outcome).into_iter().chain(of_scene(&scene.warnings)).collect(),
+            warnings,
         }
+    }
+
+    /// Adds the camera and what its picture says of itself.
+    pub fn see(&mut self, camera: Option<CameraReport>, said: Vec<Warning>) {
+        self.camera = camera;
+        let of_run = self.warnings.iter().take_while(|warning| warning.code != SCENE).count();
+        self.warnings.splice(of_run..of_run, said);
+        self.warnings[..].sort_by_key(|warning| (warning.code == SCENE, std::cmp::Reverse(warning.severity)));
     }
 }
 

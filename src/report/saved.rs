@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::error::warning::Warning;
 use crate::run::Plan;
 use crate::scene::Scene;
 
@@ -27,7 +28,7 @@ pub struct SavedReport {
     pub camera: CameraReport,
     /// "photons": all that were asked for are in the picture.
     pub stopped_by: &'static str,
-    /// Warnings about the scene and its files.
+    /// Warnings about the picture, the scene and its files.
     pub warnings: Vec<String>,
 }
 
@@ -40,7 +41,14 @@ pub struct SavedTime {
 
 impl SavedReport {
     /// The report of a picture of the photons in this file, which a run by this plan saved.
-    pub fn new(scene: &Scene, plan: &Plan, map: &Path, camera: CameraReport, total_s: f64) -> Self {
+    pub fn new(
+        scene: &Scene,
+        plan: &Plan,
+        map: &Path,
+        (camera, said): (CameraReport, &[Warning]),
+        total_s: f64,
+    ) -> Self {
+        let said = said.iter().chain(&scene.found).map(ToString::to_string);
         Self {
             run: RunReport::new(scene, plan, camera.picture.photons),
             replicates: plan.replicates(),
@@ -48,7 +56,7 @@ impl SavedReport {
             time: SavedTime { total_s },
             camera,
             stopped_by: "photons",
-            warnings: scene.warnings.iter().map(ToString::to_string).collect(),
+            warnings: said.chain(scene.warnings.iter().map(ToString::to_string)).collect(),
         }
     }
 }

@@ -1,11 +1,17 @@
-//! What a run says of itself: where its photons found that the scene is not what its numbers would be right for.
+//! What a run says of itself: where it was found that the scene is not what its numbers would be right for, when it was
+//! built and by the photons.
 
 use crate::error::warning::{Severity, Warning};
 use crate::geometry::SurfaceId;
 use crate::scene::Scene;
 use crate::scene::receiver::ReceiverSide;
+use crate::scene::sheets::{CLASH, Clash};
+use crate::transport::mixed::{self, Witness};
 
 use super::Outcome;
+
+/// The code of light that total reflection keeps.
+pub const TRAPPED: &str = "trapped";
 
 /// Of a photon's flux: killed walks that take away more than this are more than a receiver's error can hide.
 const KILLED_IN_DOUBT: f64 = 1e-6;
@@ -15,11 +21,26 @@ const KILLED_WRONG: f64 = 1e-3;
 const CORRECTED: f64 = 0.01;
 /// Of an emitter's photons: meeting nothing, this many are no accident.
 const MISSED: f64 = 0.999;
+/// Of so many, at least: a few may miss by chance.
+const FEWEST_EMITTED: u64 = 1000;
+/// Of a receiver on whose side nothing arrives: so many on the other one are no accident.
+const FEWEST_TURNED_AWAY: u64 = 16;
+/// Of all photons, this share in two media at one place are more than a gap at a rim.
+const MIXED: f64 = 1e-3;
 
 /// The warnings of a finished run, the gravest first.
 pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     let run = Run { scene, outcome, photons: (outcome.photons as f64).max(1.0) };
     let mut all: Vec<Warning> = run.contradicted().collect();
+    // What photons have met is told with its share, and not again.
+    let is_met = |s| outcome.census.exceptions.contradicted.contains_key(s);
+    let met: Vec<_> = scene.clashes.iter().filter(|c| c.surfaces.iter().any(is_met)).collect();
+    let is_told = |found: &Warning| {
+        found.code == CLASH
+            && met.iter().any(|c| c.surfaces.iter().all(|s| found.surfaces.contains(&run.name(*s))))
+    };
+    all.extend(scene.found.iter().filter(|found| !is_told(found)).cloned());
+    all.extend(run.mixed());
     all.extend(run.lost_in_bodies());
     all.extend(run.trapped());
     all.extend(run.killed());
@@ -28,6 +49,19 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     all.extend(run.aimed_away());
     all.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     all
+}
+
+/// What to do about a surface that is reached in another medium than it states.
+pub fn remedy_of_contradiction(scene: &Scene, surface: SurfaceId) -> &'static str {
+    let is_turned = |clash: &&Clash| clash.same_way && clash.surfaces.contains(&surface);
+    if let Some(clash) = scene.clashes.iter().find(is_turned) {
+        clash.remedy()
+    } else if scene.geometry.is_closed(surface) {
+        "leave `ior_outside` away: the medium outside a body is the one that is there"
+    } else {
+        "if it is the far face of a pane, turn it round so that its front looks out; if the lamp or camera stands behind it, say \
+         `medium`; a body with both faces (a box) needs neither"
+    }
 }
 
 struct Run<'a> {
@@ -41,35 +75,46 @@ impl Run<'_> {
         self.scene.geometry.surfaces()[surface.0 as usize].name.clone()
     }
 
-    /// A share in words, with no more digits than it means.
-    fn percent(share: f64) -> String {
-        match 100.0 * share {
-            p if p >= 10.0 => format!("{p:.0} %"),
-            p if p >= 0.01 => format!("{p:.2} %"),
-            p => format!("{p:.0e} %"),
-        }
-    }
-
     fn contradicted(&self) -> impl Iterator<Item = Warning> {
         self.outcome.census.exceptions.contradicted.iter().map(|(&surface, &count)| {
             let (name, share) = (self.name(surface), count as f64 / self.photons);
-            let is_open = !self.scene.geometry.is_closed(surface);
-            let remedy = if is_open {
-                "if it is the far face of a pane, turn it round so that its front looks out; if the lamp or camera stands \
-                 behind it, say `medium`; a body with both faces (a box) needs neither"
-            } else {
-                "leave `ior_outside` away: the medium outside a body is the one that is there"
-            };
             Warning {
                 severity: Severity::Untrusted,
                 code: "contradicted-medium",
                 message: format!(
                     "light reached surface \"{name}\" in another medium than the scene says is there, {} times a photon",
-                    Self::percent(share)
+                    percent(share)
                 ),
                 surfaces: vec![name],
                 share: Some(share),
-                remedy: remedy.into(),
+                remedy: remedy_of_contradiction(self.scene, surface).into(),
+            }
+        })
+    }
+
+    /// Open surfaces that light goes through and past.
+    fn mixed(&self) -> impl Iterator<Item = Warning> {
+        let contradicted = &self.outcome.census.exceptions.contradicted;
+        let found = mixed::probe(self.scene).into_iter();
+        found.filter(|m| m.share >= MIXED && !contradicted.contains_key(&m.sheet)).map(|mixed| {
+            let (name, [here, there]) = (self.name(mixed.sheet), mixed.media.map(|m| self.scene.media.ior(m)));
+            let witness = match mixed.witness {
+                Witness::Emitter(i) => format!("emitter \"{}\" lights directly", self.scene.emitter_names[i]),
+                Witness::Camera => "the camera sees directly".to_owned(),
+            };
+            Warning {
+                severity: Severity::Doubtful,
+                code: "mixed-media",
+                message: format!(
+                    "{} of all photons reach, through the open surface \"{name}\" and in a medium of refractive index {here}, \
+                     what {witness}, in one of {there}",
+                    percent(mixed.share)
+                ),
+                surfaces: vec![name],
+                share: Some(mixed.share),
+                remedy: "a pane or a lens has two faces: draw a closed body (a box), or a second sheet whose front looks out on \
+                         the other side; the surface of a liquid must reach to the walls that hold it"
+                    .into(),
             }
         })
     }
@@ -80,7 +125,7 @@ impl Run<'_> {
             Warning {
                 severity: Severity::Untrusted,
                 code: "lost-in-body",
-                message: format!("{} of all photons left the scene inside \"{name}\"", Self::percent(share)),
+                message: format!("{} of all photons left the scene inside \"{name}\"", percent(share)),
                 surfaces: vec![name],
                 share: Some(share),
                 remedy: "look for cracks, or for faces that overlap another body's, in its mesh".into(),
@@ -95,10 +140,10 @@ impl Run<'_> {
             let on_it = if is_measured { "; the receiver on it shows what the limit lets it see" } else { "" };
             Warning {
                 severity: if is_measured { Severity::Untrusted } else { Severity::Note },
-                code: "trapped",
+                code: TRAPPED,
                 message: format!(
                     "total reflection keeps {} of all light in \"{name}\" for ever{on_it}",
-                    Self::percent(share)
+                    percent(share)
                 ),
                 surfaces: vec![name],
                 share: Some(share),
@@ -123,7 +168,7 @@ impl Run<'_> {
             message: format!(
                 "{} of all photons were ended after {} events, before they were absorbed or had left; receivers that \
                  they could still have reached show too little, and their errors leave that out",
-                Self::percent(share),
+                percent(share),
                 crate::transport::walk::MAX_EVENTS
             ),
             surfaces: Vec::new(),
@@ -140,7 +185,7 @@ impl Run<'_> {
             code: "corrected-directions",
             message: format!(
                 "smooth normals sent light to the wrong side of its facet, {} times a photon, and it was mirrored back",
-                Self::percent(share)
+                percent(share)
             ),
             surfaces: Vec::new(),
             share: Some(share),
@@ -153,7 +198,7 @@ impl Run<'_> {
         let receivers = self.scene.receivers.iter().enumerate();
         receivers.filter_map(|(i, receiver)| {
             let count = self.outcome.turned_away[i];
-            if self.outcome.totals().sum[i] > 0 || count == 0 {
+            if self.outcome.totals().sum[i] > 0 || count < FEWEST_TURNED_AWAY {
                 return None;
             }
             let (side, other) = match receiver.side {
@@ -183,8 +228,9 @@ impl Run<'_> {
         let ledger = &self.outcome.ledger;
         let missed = self.outcome.census.missed.iter();
         missed.filter_map(move |(&emitter, &count)| {
-            let share = count as f64 / (ledger.emitted[emitter] as f64).max(1.0);
-            if share < MISSED {
+            let emitted = ledger.emitted[emitter];
+            let share = count as f64 / (emitted as f64).max(1.0);
+            if share < MISSED || emitted < FEWEST_EMITTED {
                 return None;
             }
             Some(Warning {
@@ -192,7 +238,7 @@ impl Run<'_> {
                 code: "aimed-away",
                 message: format!(
                     "{} of the light of emitter \"{}\" leaves the scene without meeting any surface",
-                    Self::percent(share),
+                    percent(share),
                     self.scene.emitter_names[emitter]
                 ),
                 surfaces: Vec::new(),
@@ -200,6 +246,15 @@ impl Run<'_> {
                 remedy: "look at its position and aim: is it below the floor, or turned away?".into(),
             })
         })
+    }
+}
+
+/// A share in words, with no more digits than it means.
+pub fn percent(share: f64) -> String {
+    match 100.0 * share {
+        p if p >= 10.0 => format!("{p:.0} %"),
+        p if p >= 0.01 => format!("{p:.2} %"),
+        p => format!("{p:.0e} %"),
     }
 }
 

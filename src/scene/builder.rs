@@ -12,7 +12,7 @@ use super::camera::Camera;
 use super::media::{Media, Medium};
 use super::options::SurfaceOptions;
 use super::receiver::{Cells, MOST_CELLS, Receiver, ReceiverSpec};
-use super::{Identity, Scene, check, contacts, endless};
+use super::{Identity, Scene, check, contacts, endless, found};
 
 #[derive(Debug)]
 struct EmitterPart {
@@ -187,22 +187,28 @@ impl SceneBuilder {
         }
         let camera_ambient = self.camera_medium.map_or(0, |medium| media.number(medium));
         match Emitters::new(emitters) {
-            Ok(emitters) if errors.is_empty() => Ok(Scene {
-                geometry,
-                emitters,
-                receivers,
-                emitter_names,
-                compared_reflections: self.compared_reflections,
-                camera: self.camera,
-                identity: Identity::default(),
-                warnings,
-                media,
-                trap_limit: OnceLock::new(),
-                camera_ambient,
-                materials,
-                starts,
-                emitter_colours,
-            }),
+            Ok(emitters) if errors.is_empty() => {
+                let mut scene = Scene {
+                    geometry,
+                    emitters,
+                    receivers,
+                    emitter_names,
+                    compared_reflections: self.compared_reflections,
+                    camera: self.camera,
+                    identity: Identity::default(),
+                    warnings,
+                    found: Vec::new(),
+                    clashes: Vec::new(),
+                    media,
+                    trap_limit: OnceLock::new(),
+                    camera_ambient,
+                    materials,
+                    starts,
+                    emitter_colours,
+                };
+                (scene.clashes, scene.found) = found::look(&scene, &options);
+                Ok(scene)
+            }
             Ok(_) => Err(errors),
             Err(e) => {
                 errors.push(e.into());

@@ -110,6 +110,18 @@ impl Media {
         number as MediumId
     }
 
+    /// The refractive index of a medium.
+    pub fn ior(&self, medium: MediumId) -> f64 {
+        self.media[usize::from(medium)].ior
+    }
+
+    /// Whether there is any open surface that changes the medium.
+    pub fn has_sheets(&self) -> bool {
+        self.roles
+            .iter()
+            .any(|role| matches!(role, Role::Open { media: [before, behind] } if before != behind))
+    }
+
     /// What a surface is.
     #[inline]
     pub fn role(&self, surface: SurfaceId) -> Role {

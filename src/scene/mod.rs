@@ -10,10 +10,14 @@ mod contacts;
 mod endless;
 mod facets;
 mod figure;
+mod found;
 pub mod media;
+mod near_field;
 mod options;
 pub mod receiver;
 pub mod requires;
+pub mod sheets;
+mod sizes;
 
 use std::sync::OnceLock;
 
@@ -21,6 +25,7 @@ use glam::DVec3;
 
 use crate::emitter::{Colour, Emitter, Emitters};
 use crate::error::Diagnostic;
+use crate::error::warning::Warning;
 use crate::geometry::{Geometry, SurfaceId, Whereabouts};
 use crate::surface::{self, Material};
 
@@ -65,6 +70,10 @@ pub struct Scene {
     pub identity: Identity,
     /// What is allowed but probably not meant.
     pub warnings: Vec<Diagnostic>,
+    /// What was found when it was built and must be known beside its numbers: part of the warnings of every run.
+    pub found: Vec<Warning>,
+    /// Open surfaces that contradict each other.
+    pub clashes: Vec<sheets::Clash>,
     /// What fills the space.
     pub media: Media,
     /// After how many total reflections in a row light is trapped: found when it is first asked for.

@@ -2,11 +2,12 @@
 //!
 //! [`walk()`] follows one photon; [`ledger`] counts where photons begin and end; [`census`] collects what a batch of photons
 //! did beside that: coordinates used, exceptions made; [`parallel`] runs ranges of photon indices over threads;
-//! [`attempts`] counts the points that photons by rejection take.
+//! [`attempts`] counts the points that photons by rejection take; [`mixed`] looks for places that light reaches in two media.
 
 pub mod attempts;
 pub mod census;
 pub mod ledger;
+pub mod mixed;
 pub mod parallel;
 pub mod trap;
 pub mod walk;

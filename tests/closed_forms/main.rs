@@ -23,3 +23,4 @@ mod shapes;
 mod slab;
 mod sphere;
 mod tabulated_scenes;
+mod warnings;

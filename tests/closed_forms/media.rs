@@ -17,10 +17,10 @@ use glam::DVec3;
 use crate::support::judge::assert_total;
 use crate::support::scenes::{run, scene, try_scene};
 
-const LAMP: &str = "[[emitter]]\ntype = \"collimated\"\nposition = [0.0, 0.0, 2.0]\naim = [0.0, 0.0, -1.0]\nradius = 0.03\nflux_lm = 1000.0\n";
-const GLASS: &str = "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n";
-const WATER: &str = "[material.water]\ntype = \"dielectric\"\nior = 1.333\n";
-const BLACK: &str = "[material.black]\ntype = \"absorber\"\n";
+pub(crate) const LAMP: &str = "[[emitter]]\ntype = \"collimated\"\nposition = [0.0, 0.0, 2.0]\naim = [0.0, 0.0, -1.0]\nradius = 0.03\nflux_lm = 1000.0\n";
+pub(crate) const GLASS: &str = "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n";
+pub(crate) const WATER: &str = "[material.water]\ntype = \"dielectric\"\nior = 1.333\n";
+pub(crate) const BLACK: &str = "[material.black]\ntype = \"absorber\"\n";
 
 /// What passes interfaces between media of these refractive indices, in their order.
 fn passed(indices: &[f64]) -> f64 {
@@ -31,7 +31,7 @@ fn passed(indices: &[f64]) -> f64 {
     1.0 / (1.0 + odds.sum::<f64>())
 }
 
-fn cuboid(name: &str, material: &str, min: [f64; 3], max: [f64; 3], more: &str) -> String {
+pub(crate) fn cuboid(name: &str, material: &str, min: [f64; 3], max: [f64; 3], more: &str) -> String {
     format!(
         "[[surface]]\nname = \"{name}\"\ntype = \"box\"\nmaterial = \"{material}\"\nmin = {min:?}\nmax = {max:?}\n{more}\n"
     )
@@ -42,14 +42,14 @@ fn slab(name: &str, material: &str, low: f64, high: f64, more: &str) -> String {
     cuboid(name, material, [-0.05, -0.05, low], [0.05, 0.05, high], more)
 }
 
-fn sphere(name: &str, material: &str, centre: [f64; 3], radius: f64, more: &str) -> String {
+pub(crate) fn sphere(name: &str, material: &str, centre: [f64; 3], radius: f64, more: &str) -> String {
     format!(
         "[[surface]]\nname = \"{name}\"\ntype = \"sphere\"\nmaterial = \"{material}\"\ncenter = {centre:?}\nradius = {radius:?}\n{more}\n"
     )
 }
 
 /// A horizontal sheet that looks up, or down.
-fn sheet(name: &str, material: &str, z: f64, up: bool) -> String {
+pub(crate) fn sheet(name: &str, material: &str, z: f64, up: bool) -> String {
     let v = if up { 1.0 } else { -1.0 };
     format!(
         "[[surface]]\nname = \"{name}\"\ntype = \"rectangle\"\nmaterial = \"{material}\"\ncorner = [-0.5, {:?}, {z:?}]\nedge_u = [1.0, 0.0, 0.0]\nedge_v = [0.0, {v:?}, 0.0]\n",
@@ -58,7 +58,7 @@ fn sheet(name: &str, material: &str, z: f64, up: bool) -> String {
 }
 
 /// A receiver that counts on both sides.
-fn receiver(surface: &str) -> String {
+pub(crate) fn receiver(surface: &str) -> String {
     format!("[[receiver]]\nsurface = \"{surface}\"\nside = \"both\"\ncells = [1, 1]\n")
 }
 

@@ -6,6 +6,7 @@ mod support;
 
 mod absorber;
 mod bsdf;
+mod check;
 mod contract;
 #[cfg(unix)]
 mod interrupts;

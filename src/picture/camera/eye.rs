@@ -4,12 +4,13 @@
 //! E; at the scattering surface by shadow rays what comes straight from emitters, L D S* E; and from the
 //! photons there what had at least one event before, L (S|D)+ D S* E. Each once.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glam::DVec3;
 
 use crate::emitter::{Emits, Emitter};
-use crate::geometry::{Hit, Side, Whereabouts};
+use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
 use crate::picture::camera::pinhole::EyeRay;
 use crate::picture::camera::view::View;
 use crate::picture::gather::{Density, Gathered};
@@ -50,6 +51,10 @@ pub(crate) struct EyePath<'a, const C: usize> {
     pub gathered: Gathered<C>,
     /// Paths that the guard against endless ones ended.
     pub killed: u64,
+    /// Paths looked along.
+    pub paths: u64,
+    /// Surfaces reached in another medium than the scene says is there: how many paths did, and the last of them.
+    pub contradicted: BTreeMap<SurfaceId, (u64, u64)>,
     pending: Vec<Branch>,
 }
 
@@ -74,11 +79,13 @@ impl<'a, const C: usize> EyePath<'a, C> {
     /// Nothing looked at yet.
     pub fn new(view: &'a View<'a>, pass: &'a Pass<'a, C>) -> Self {
         let gathered = Gathered::new(pass.replicates.end as usize);
-        Self { view, pass, gathered, killed: 0, pending: Vec::new() }
+        let contradicted = BTreeMap::new();
+        Self { view, pass, gathered, killed: 0, paths: 0, contradicted, pending: Vec::new() }
     }
 
     /// Follows a ray; gathers what photons bring and returns what is found without them, by channel, cd/m2.
     pub fn look<R: Chooser>(&mut self, ray: EyeRay, chooser: &mut R) -> [f64; 3] {
+        self.paths += 1;
         let at = self.view.start.clone();
         self.pending.push(Branch { ray, at, weight: EyeWeight::ONE, share: 1.0, events: 0 });
         let mut found = [0.0; 3];
@@ -104,6 +111,9 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 }
             }
             let Some(hit) = hit else { return };
+            if scene.media.is_contradicted(&hit, &path.at) {
+                self.count_contradicted(hit.surface);
+            }
             let Interface::Between(indices) = scene.media.interface(&hit, &path.at) else {
                 scene.media.leave(&mut path.at, &hit, hit.other_side());
                 path.ray.origin = hit.position;
@@ -119,6 +129,15 @@ impl<'a, const C: usize> EyePath<'a, C> {
             }
         }
         self.killed += 1;
+    }
+
+    /// Once a path, however often it comes by.
+    #[cold]
+    fn count_contradicted(&mut self, surface: SurfaceId) {
+        let (count, last) = self.contradicted.entry(surface).or_default();
+        if *last != self.paths {
+            (*count, *last) = (*count + 1, self.paths);
+        }
     }
 
     /// Follows what goes on specularly: whether anything does. Of two ways both are followed where nothing is

@@ -1,11 +1,14 @@
 //! Passes of the camera over its pixels, tile by tile over threads; the same bits for any number of them.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::geometry::SurfaceId;
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::hash::stream_key;
 use crate::sequence::owen::OwenPoints;
@@ -18,12 +21,16 @@ use super::pixel::{PixelSums, SETS};
 use super::view::View;
 
 /// What a pass did beside its pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Rendered {
     /// Pixels that an interrupt left unseen: black, of unknown error.
     pub unseen: u64,
     /// Eye paths that were ended because they did not end by themselves.
     pub killed: u64,
+    /// Eye paths that were followed.
+    pub paths: u64,
+    /// Those of them that reached a surface in another medium than the scene says is there.
+    pub contradicted: BTreeMap<SurfaceId, u64>,
 }
 
 /// Coordinates of a pixel's samples that come from a net; those beyond are independent.
@@ -50,7 +57,7 @@ pub fn render<const C: usize>(
         ));
     }
     let pixels = view.camera.pixels;
-    let (killed, unseen) = (AtomicU64::new(0), AtomicU64::new(0));
+    let all = Mutex::new(Rendered::default());
     let sets = SETS.min(view.camera.samples);
     sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
         let mut brush = Brush::new(view, pass, sets);
@@ -69,15 +76,21 @@ pub fn render<const C: usize>(
                 done += 1;
             }
         }
-        killed.fetch_add(brush.path.killed, Ordering::Relaxed);
-        unseen.fetch_add(left, Ordering::Relaxed);
+        let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+        all.killed += brush.path.killed;
+        all.unseen += left;
+        all.paths += brush.path.paths;
+        for (surface, (count, _)) in &brush.path.contradicted {
+            *all.contradicted.entry(*surface).or_default() += count;
+        }
+        drop(all);
         progress(done);
     });
     if pass.finishes {
         sums.replicates += pass.replicates.len() as u32;
     }
     sums.sets = sets;
-    Ok(Rendered { unseen: unseen.into_inner(), killed: killed.into_inner() })
+    Ok(all.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
 /// Renders pixels one after another.

@@ -139,6 +139,8 @@ impl<'a, const C: usize> Eye<'a, C> {
             bandwidth: Some(bandwidths),
             eye_paths_killed: self.rendered.killed,
             pixels_unseen: self.rendered.unseen,
+            eye_paths: self.rendered.paths,
+            eye_paths_contradicted: self.rendered.contradicted,
             ..PictureSummary::default()
         };
         (self.sums.finish(), summary)
