@@ -58,7 +58,7 @@ fn one_two_and_seven_threads_write_the_same_bytes_and_another_seed_others() {
     let with = |name: &str, threads: &str, seed: &str| {
         let path = render(
             &folder.path().join(name),
-            &["--photons", "2^18", "--replicates", "4", "--threads", threads, "--seed", seed],
+            &["--photons", "2^16", "--replicates", "4", "--threads", threads, "--seed", seed],
         );
         (files(&path, "exr"), files(&path, "png"))
     };
@@ -104,7 +104,7 @@ fn with_small_picture(text: &str) -> String {
     let of_camera = text.find("\n[camera]").unwrap_or(text.len());
     let (scene, camera) = text.split_at(of_camera);
     let lines = camera.lines().map(|line| match line.split_once(" = ") {
-        Some(("pixels", _)) => "pixels = [40, 30]\nsamples = 4",
+        Some(("pixels", _)) => "pixels = [24, 18]\nsamples = 2",
         Some(("samples", _)) => "",
         _ => line,
     });
@@ -130,7 +130,7 @@ fn the_order_of_surfaces_changes_no_pixel() {
             let scene = folder.path().join(format!("{name}-{label}.toml"));
             std::fs::write(&scene, reordered(&text, order)).unwrap();
             let out = folder.path().join(format!("{name}-{label}"));
-            render(&out, &[scene.to_str().unwrap(), "--photons", "2^14", "--replicates", "4"]);
+            render(&out, &[scene.to_str().unwrap(), "--photons", "2^12", "--replicates", "4"]);
             files(&out, "exr").iter().map(|(exr, _)| read_maps(out.join(exr)).unwrap()).collect()
         };
         let original = maps("original", &|_| {});
