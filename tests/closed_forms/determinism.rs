@@ -104,7 +104,7 @@ fn with_small_picture(text: &str) -> String {
     let of_camera = text.find("\n[camera]").unwrap_or(text.len());
     let (scene, camera) = text.split_at(of_camera);
     let lines = camera.lines().map(|line| match line.split_once(" = ") {
-        Some(("pixels", _)) => "pixels = [24, 18]\nsamples = 2",
+        Some(("pixels", _)) => "pixels = [24, 18]\nsamples = 4",
         Some(("samples", _)) => "",
         _ => line,
     });

@@ -169,7 +169,7 @@ fn assert_ridges(label: &str, value: impl Fn(u32, bool, u32) -> f64) {
 /// on along the next chord, 2 cos t long, turned by pi - 2t.
 fn exact_lx(inclination: f64, cells: u32) -> Vec<f64> {
     let mut lx = vec![0.0; (2 * cells * cells) as usize];
-    let (nt, ns) = (1u32 << 14, 1u32 << 11);
+    let (nt, ns) = (1u32 << 13, 1u32 << 11);
     let (dt, ds) = (PI / f64::from(nt), REACH / f64::from(ns));
     for k in 0..nt {
         let first = (f64::from(k) + 0.5) * dt - FRAC_PI_2;

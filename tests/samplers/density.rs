@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use crate::support::angles::Luminaire;
 use crate::support::data;
-use crate::support::density::{Density, Measure, ends};
+use crate::support::density::{Density, Measure, PolarCdf, ends};
 use crate::support::given::of_grid;
 use crate::support::sphere_table::SphereTable;
 use crate::support::statistics::{chi_square, kolmogorov_smirnov, sidak};
@@ -104,22 +104,58 @@ fn shifted(breaks: &[f64], least: usize) -> Vec<f64> {
     edges
 }
 
-/// p-values: chi-square on the file's cells, on shifted cells, Kolmogorov-Smirnov on both angles.
+/// Masses of the cells between edges.
+struct Cells {
+    p_edges: Vec<f64>,
+    q_edges: Vec<f64>,
+    masses: Vec<f64>,
+}
+
+impl Cells {
+    fn new(density: &Density<'_>, p_edges: Vec<f64>, q_edges: Vec<f64>) -> Self {
+        let masses = density.masses(&p_edges, &q_edges);
+        Self { p_edges, q_edges, masses }
+    }
+
+    fn p_value(&self, samples: &[(f64, f64)]) -> f64 {
+        let (counts, outside) = histogram(samples, &self.p_edges, &self.q_edges);
+        if outside > 0 { 0.0 } else { chi_square(&counts, &self.masses).p_value }
+    }
+}
+
+/// What samples are judged by: the quadrature is done once for all sets of them.
+struct Judge<'w> {
+    density: Density<'w>,
+    cells: [Cells; 2],
+    polar: PolarCdf,
+}
+
+impl<'w> Judge<'w> {
+    fn new(density: Density<'w>) -> Self {
+        let cells = [
+            Cells::new(&density, density.p_breaks.clone(), density.q_breaks.clone()),
+            Cells::new(&density, shifted(&density.p_breaks, 17), shifted(&density.q_breaks, 11)),
+        ];
+        Self { cells, polar: density.polar_cdf(), density }
+    }
+
+    /// p-values: chi-square on the file's cells, on shifted cells, Kolmogorov-Smirnov on both angles.
+    fn p_values(&self, samples: &[(f64, f64)]) -> [f64; TESTS_A_FILE] {
+        let polar = samples.iter().map(|s| self.polar.at(s.0)).collect();
+        let some = samples.iter().take(samples.len() / CONDITIONAL_STEP);
+        let azimuth = some.map(|s| self.density.azimuth_cdf(s.0, s.1)).collect();
+        let [cells, shifted] = &self.cells;
+        [
+            cells.p_value(samples),
+            shifted.p_value(samples),
+            kolmogorov_smirnov(polar).p_value,
+            kolmogorov_smirnov(azimuth).p_value,
+        ]
+    }
+}
+
 fn p_values(samples: &[(f64, f64)], density: &Density<'_>) -> [f64; TESTS_A_FILE] {
-    let chi = |p_edges: &[f64], q_edges: &[f64]| {
-        let (counts, outside) = histogram(samples, p_edges, q_edges);
-        if outside > 0 { 0.0 } else { chi_square(&counts, &density.masses(p_edges, q_edges)).p_value }
-    };
-    let cdf = density.polar_cdf();
-    let polar = samples.iter().map(|s| cdf.at(s.0)).collect();
-    let some = samples.iter().take(samples.len() / CONDITIONAL_STEP);
-    let azimuth = some.map(|s| density.azimuth_cdf(s.0, s.1)).collect();
-    [
-        chi(&density.p_breaks, &density.q_breaks),
-        chi(&shifted(&density.p_breaks, 17), &shifted(&density.q_breaks, 11)),
-        kolmogorov_smirnov(polar).p_value,
-        kolmogorov_smirnov(azimuth).p_value,
-    ]
+    Judge::new(density.clone()).p_values(samples)
 }
 
 /// Tests these files; the smallest p-value is asserted against the corrected level.
@@ -184,11 +220,11 @@ fn own_files_are_sampled_with_their_density_by_every_rejection() {
     let level = sidak(FAMILY, files.len() * TESTS_A_FILE * Rejection::ALL.len());
     for (k, path) in files.iter().enumerate() {
         let photometry = lm63::read(path).unwrap();
-        let density = Density::new(&photometry.web);
+        let judge = Judge::new(Density::new(&photometry.web));
         for rejection in Rejection::ALL {
             let sampling = Sampling::Rejection(rejection);
-            let samples = angles_by(sampling, FEWER, &photometry, &density, 100 + k as u64);
-            let p = p_values(&samples, &density);
+            let samples = angles_by(sampling, FEWER, &photometry, &judge.density, 100 + k as u64);
+            let p = judge.p_values(&samples);
             println!("{} {}: {p:.4?}", path.display(), rejection.name());
             assert!(p.into_iter().all(|p| p > level), "{} {}: {p:?}", path.display(), rejection.name());
         }

@@ -16,7 +16,7 @@ fn compare(output: &Path) -> Command {
             "--photons",
             "2^14",
             "--reference-photons",
-            "2^19",
+            "2^17",
             "--seeds",
             "2",
             "--cells",
