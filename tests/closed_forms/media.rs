@@ -359,12 +359,14 @@ fn part_within(c: f64) -> f64 {
 #[test]
 fn a_clear_tank_keeps_the_light_that_it_reflects_totally_at_all_its_walls() {
     let lamp = "[[emitter]]\ntype = \"isotropic\"\nposition = [0.0, 0.0, 0.001]\nflux_lm = 1000.0\n";
-    let text = [lamp, WATER, BLACK].concat()
+    // Of so small an index that little is kept: every photon that is costs thousands of reflections.
+    let ior = 1.28f64;
+    let text = [lamp, &WATER.replace("1.333", &ior.to_string()), BLACK].concat()
         + &sphere("room", "black", [0.0; 3], 1.0, "")
         + &cuboid("tank", "water", [-0.2, -0.1, -0.1], [0.2, 0.1, 0.1], "")
         + &receiver("room");
     let (outcome, estimate) = flux(&scene(&text), 1 << 9, 4);
-    let kept = 1000.0 * part_within((1.0 - 1.0 / (1.333f64 * 1.333)).sqrt());
+    let kept = 1000.0 * part_within((1.0 - 1.0 / (ior * ior)).sqrt());
     println!("{kept} lm kept, {:?}, {estimate:?}", outcome.trapped_lm());
     assert_total("trapped", &outcome, outcome.trapped_lm(), kept);
     assert_total("in the room", &outcome, estimate, 1000.0 - kept);

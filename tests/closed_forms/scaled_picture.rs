@@ -43,7 +43,7 @@ fn powers_of_two_change_no_bit_of_a_picture() {
             let camera = scene["camera"].as_table_mut().unwrap();
             camera.insert("lens_radius".into(), lens_radius.into());
             camera.insert("method".into(), method.into());
-            camera.insert("pixels".into(), vec![24, 18].into());
+            camera.insert("pixels".into(), vec![16, 12].into());
             camera.insert("samples".into(), 4.into());
             let at = format!("{}, {method}, lens {lens_radius}", file.display());
             let (outcome, film, summary) = seen(&scene, 1.0);

@@ -259,7 +259,7 @@ fn what_an_interrupt_leaves_of_a_replicate_is_taken_back() {
 
 #[test]
 fn a_bandwidth_chosen_in_the_first_of_many_passes_is_near_that_of_one() {
-    let plan = plan(1 << 16, 8);
+    let plan = plan(1 << 18, 8);
     let chosen = |memory| {
         let mut scene = ball_on_table(grey(0.4), memory, true);
         change(&mut scene, |spec| spec.bandwidth = Bandwidth::Automatic);
@@ -268,7 +268,7 @@ fn a_bandwidth_chosen_in_the_first_of_many_passes_is_near_that_of_one() {
     };
     let (whole, one) = chosen(ROOM);
     // Several replicates in the first pass, one, and parts of one.
-    for memory in [1 << 19, 1 << 18, 1 << 17, 1 << 16, 1 << 15] {
+    for memory in [1 << 21, 1 << 20, 1 << 19, 1 << 18, 1 << 17] {
         let (parts, many) = chosen(memory);
         println!("{} passes: {parts:?} m, one: {whole:?} m", many.passes);
         assert!(many.passes > one.passes);

@@ -75,10 +75,10 @@ fn a_uniformly_lit_plate_is_as_bright_in_every_pixel_from_anywhere() {
     let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     // All that pixels see, their filters' reach included, lies within the light.
     for (position, look_at, up, fov_deg, filter, photons) in [
-        (at(0.0, 0.0, 3.0), at(0.0, 0.0, 0.0), DVec3::Y, 110.0, Filter::Box, 1 << 18),
-        (at(2.0, -1.0, 1.5), at(1.0, 1.0, 0.0), DVec3::Z, 60.0, Filter::Tent, 1 << 18),
-        (at(-9.0, 4.0, 7.0), at(0.0, 0.0, 0.0), DVec3::Z, 20.0, Filter::Gaussian, 1 << 18),
-        (at(0.5, 0.5, 1.2), at(2.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 2.0), 40.0, Filter::Gaussian, 1 << 20),
+        (at(0.0, 0.0, 3.0), at(0.0, 0.0, 0.0), DVec3::Y, 110.0, Filter::Box, 1 << 19),
+        (at(2.0, -1.0, 1.5), at(1.0, 1.0, 0.0), DVec3::Z, 60.0, Filter::Tent, 1 << 19),
+        (at(-9.0, 4.0, 7.0), at(0.0, 0.0, 0.0), DVec3::Z, 20.0, Filter::Gaussian, 1 << 19),
+        (at(0.5, 0.5, 1.2), at(2.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 2.0), 40.0, Filter::Gaussian, 1 << 21),
     ] {
         let spec = CameraSpec { filter, ..CameraSpec::pinhole(position, look_at, up, fov_deg, [6, 4]) };
         let plan = plan(photons, 16);

@@ -223,7 +223,7 @@ fn own_files_are_sampled_with_their_density_by_every_rejection() {
         let judge = Judge::new(Density::new(&photometry.web));
         for rejection in Rejection::ALL {
             let sampling = Sampling::Rejection(rejection);
-            let samples = angles_by(sampling, FEWER, &photometry, &judge.density, 100 + k as u64);
+            let samples = angles_by(sampling, FEWER / 2, &photometry, &judge.density, 100 + k as u64);
             let p = judge.p_values(&samples);
             println!("{} {}: {p:.4?}", path.display(), rejection.name());
             assert!(p.into_iter().all(|p| p > level), "{} {}: {p:?}", path.display(), rejection.name());
