@@ -58,7 +58,7 @@ fn files_of_every_type_light_a_bare_plane_as_the_integral_says() {
         let lamp = Lamp::new(file, POSITION, AIM, UP);
         let exact = cell_means(CELLS, CELLS, panels, |u, v| lamp.illuminance_lx(on_plate(u, v), DVec3::Z));
         let scene = scene(&emitter(file));
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 14, 16, 1);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 16, 16, 1);
         assert_cells(file, &scene, &outcome, 0, &exact);
         let area = 9.0 / (CELLS * CELLS) as f64;
         assert_total(file, &outcome, outcome.receiver_flux_lm(0), exact.iter().sum::<f64>() * area);
@@ -99,7 +99,7 @@ edge_v = [0.0, 0.0, 3.0]
 "#
             );
         let scene = scene(&text);
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 2);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 15, 16, 2);
         let direct = |u, v| lamp.illuminance_lx(on_plate(u, v), DVec3::Z);
         let image = |u, v| reflectance * lamp.mirrored_illuminance_lx(plane, on_plate(u, v), DVec3::Z);
         let maps = [
