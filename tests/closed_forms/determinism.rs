@@ -58,7 +58,7 @@ fn one_two_and_seven_threads_write_the_same_bytes_and_another_seed_others() {
     let with = |name: &str, threads: &str, seed: &str| {
         let path = render(
             &folder.path().join(name),
-            &["--photons", "2^18", "--replicates", "4", "--threads", threads, "--seed", seed],
+            &["--photons", "2^16", "--replicates", "4", "--threads", threads, "--seed", seed],
         );
         (files(&path, "exr"), files(&path, "png"))
     };
@@ -99,12 +99,16 @@ fn reordered(text: &str, order: impl Fn(&mut Vec<String>)) -> String {
         .replace("\"glassware/", &format!("\"{}/scenes/glassware/", project().display()))
 }
 
-/// A scene's text with a small picture, where it has one.
-fn with_small_picture(text: &str) -> String {
+/// A scene's text with small maps and a small picture, where it has one.
+fn made_small(text: &str) -> String {
+    let cells = |line: &str| line.starts_with("cells = [");
+    let maps: Vec<&str> =
+        text.lines().map(|line| if cells(line) { "cells = [48, 36]" } else { line }).collect();
+    let text = maps.join("\n");
     let of_camera = text.find("\n[camera]").unwrap_or(text.len());
     let (scene, camera) = text.split_at(of_camera);
     let lines = camera.lines().map(|line| match line.split_once(" = ") {
-        Some(("pixels", _)) => "pixels = [40, 30]\nsamples = 4",
+        Some(("pixels", _)) => "pixels = [24, 18]\nsamples = 4",
         Some(("samples", _)) => "",
         _ => line,
     });
@@ -125,12 +129,12 @@ fn the_order_of_surfaces_changes_no_pixel() {
     let folder = tempfile::tempdir().unwrap();
     for file in every_scene_file() {
         let name = file.file_stem().unwrap().to_str().unwrap();
-        let text = with_small_picture(&std::fs::read_to_string(&file).unwrap());
+        let text = made_small(&std::fs::read_to_string(&file).unwrap());
         let maps = |label: &str, order: &dyn Fn(&mut Vec<String>)| -> Vec<Maps> {
             let scene = folder.path().join(format!("{name}-{label}.toml"));
             std::fs::write(&scene, reordered(&text, order)).unwrap();
             let out = folder.path().join(format!("{name}-{label}"));
-            render(&out, &[scene.to_str().unwrap(), "--photons", "2^14", "--replicates", "4"]);
+            render(&out, &[scene.to_str().unwrap(), "--photons", "2^12", "--replicates", "4"]);
             files(&out, "exr").iter().map(|(exr, _)| read_maps(out.join(exr)).unwrap()).collect()
         };
         let original = maps("original", &|_| {});

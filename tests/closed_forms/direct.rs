@@ -99,7 +99,7 @@ edge_v = [0.0, 0.0, 3.0]
 "#
             );
         let scene = scene(&text);
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 2);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 15, 16, 2);
         let direct = |u, v| lamp.illuminance_lx(on_plate(u, v), DVec3::Z);
         let image = |u, v| reflectance * lamp.mirrored_illuminance_lx(plane, on_plate(u, v), DVec3::Z);
         let maps = [

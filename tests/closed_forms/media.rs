@@ -70,7 +70,7 @@ fn flux(scene: &Scene, per_replicate: u64, seed: u64) -> (Outcome, Estimate) {
 
 /// Runs a scene whose first receiver gets an exact flux, lm.
 fn assert_flux(label: &str, text: &str, exact_lm: f64) {
-    let (outcome, estimate) = flux(&scene(text), 1 << 14, 7);
+    let (outcome, estimate) = flux(&scene(text), 1 << 12, 7);
     assert_total(label, &outcome, estimate, exact_lm);
 }
 
@@ -132,7 +132,7 @@ fn a_block_on_a_white_table_gathers_what_gaps_say() {
             + &sheet("table", "white", 0.0, true)
             + &receiver("table")
     };
-    let of = |contact: &str, low: f64| flux(&scene(&text(contact, low)), 1 << 15, 11).1;
+    let of = |contact: &str, low: f64| flux(&scene(&text(contact, low)), 1 << 13, 11).1;
     for (contact, gap, known) in [("", 1e-6, 1073.17), ("contact = \"glued\"", -1e-9, 1338.75)] {
         let (touching, apart) = (of(contact, 0.0), of(contact, gap));
         let error = touching.standard_error.unwrap().hypot(apart.standard_error.unwrap());
@@ -173,7 +173,7 @@ fn a_block_in_a_corner_is_as_one_with_gaps() {
             + &receiver("floor")
             + &receiver("wall").replace("[[receiver]]", "[[receiver]]\nname = \"on the wall\"")
     };
-    let of = |gap: f64| run(&scene(&text(gap)), Sequence::SobolOwen, 1 << 15, 16, 5);
+    let of = |gap: f64| run(&scene(&text(gap)), Sequence::SobolOwen, 1 << 13, 16, 5);
     let (touching, apart) = (of(0.0), of(1e-6));
     for receiver in 0..2 {
         let (a, b) = (touching.receiver_flux_lm(receiver), apart.receiver_flux_lm(receiver));
@@ -217,7 +217,7 @@ fn the_inner_of_nested_bodies_fills_its_space_to_any_depth() {
     let down = (0..depth).map(ior);
     let up = (0..depth - 1).rev().map(ior);
     let indices: Vec<f64> = [1.0].into_iter().chain(down).chain(up).chain([1.0]).collect();
-    let (outcome, estimate) = flux(&scene(&text), 1 << 13, 3);
+    let (outcome, estimate) = flux(&scene(&text), 1 << 11, 3);
     assert_total("nested boxes", &outcome, estimate, 1000.0 * passed(&indices));
 }
 
@@ -254,7 +254,7 @@ fn a_bubble_and_a_sphere_that_fills_it() {
             + &receiver("floor")
     };
     let bubble = sphere("bubble", "air", [0.0; 3], 0.1, "");
-    let of = |more: &str| flux(&scene(&text(more)), 1 << 13, 2).1;
+    let of = |more: &str| flux(&scene(&text(more)), 1 << 11, 2).1;
     let (full, filled) =
         (of(""), of(&(bubble.clone() + &sphere("fill", "water", [0.0; 3], 0.1, "priority = 1"))));
     assert_eq!(full.value, filled.value, "water in the bubble is as no bubble");
@@ -359,12 +359,14 @@ fn part_within(c: f64) -> f64 {
 #[test]
 fn a_clear_tank_keeps_the_light_that_it_reflects_totally_at_all_its_walls() {
     let lamp = "[[emitter]]\ntype = \"isotropic\"\nposition = [0.0, 0.0, 0.001]\nflux_lm = 1000.0\n";
-    let text = [lamp, WATER, BLACK].concat()
+    // Of so small an index that little is kept: every photon that is costs thousands of reflections.
+    let ior = 1.28f64;
+    let text = [lamp, &WATER.replace("1.333", &ior.to_string()), BLACK].concat()
         + &sphere("room", "black", [0.0; 3], 1.0, "")
         + &cuboid("tank", "water", [-0.2, -0.1, -0.1], [0.2, 0.1, 0.1], "")
         + &receiver("room");
-    let (outcome, estimate) = flux(&scene(&text), 1 << 11, 4);
-    let kept = 1000.0 * part_within((1.0 - 1.0 / (1.333f64 * 1.333)).sqrt());
+    let (outcome, estimate) = flux(&scene(&text), 1 << 9, 4);
+    let kept = 1000.0 * part_within((1.0 - 1.0 / (ior * ior)).sqrt());
     println!("{kept} lm kept, {:?}, {estimate:?}", outcome.trapped_lm());
     assert_total("trapped", &outcome, outcome.trapped_lm(), kept);
     assert_total("in the room", &outcome, estimate, 1000.0 - kept);
@@ -391,7 +393,7 @@ fn a_mesh_wound_inwards_is_the_same_body_and_one_that_cuts_itself_is_the_union_o
     let cube = |low: f64, high: f64, half: f64| {
         box_mesh(DVec3::new(-half, -half, low), DVec3::new(half, half, high)).unwrap()
     };
-    let of = |mesh: Mesh| flux(&with_mesh(mesh), 1 << 13, 9);
+    let of = |mesh: Mesh| flux(&with_mesh(mesh), 1 << 12, 9);
     let (_, outward) = of(cube(0.0, 0.1, 0.05));
     let (_, inward) = of(cube(0.0, 0.1, 0.05).reversed());
     assert_eq!(outward.value, inward.value);

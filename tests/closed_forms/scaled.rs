@@ -94,15 +94,15 @@ fn powers_of_two_change_no_hit() {
         let original = scaled(&file, 1.0);
         for s in [1024.0, 1.0 / 1024.0] {
             let other = scaled(&file, s);
-            (0..1u64 << 15).into_par_iter().for_each(|index| {
+            (0..1u64 << 13).into_par_iter().for_each(|index| {
                 let (a, b) = (path(&original, &points, index), path(&other, &points, index));
                 assert_eq!(a.end, b.end, "{}: photon {index}", file.display());
                 let larger = a.steps.iter().map(|step| Step { position: step.position * s, ..*step });
                 assert!(larger.eq(b.steps), "{}: photon {index}", file.display());
             });
             let (a, b) = (
-                run(&original, Sequence::SobolOwen, 1 << 13, 4, 2),
-                run(&other, Sequence::SobolOwen, 1 << 13, 4, 2),
+                run(&original, Sequence::SobolOwen, 1 << 11, 4, 2),
+                run(&other, Sequence::SobolOwen, 1 << 11, 4, 2),
             );
             assert_eq!(
                 (a.cells(), &a.ledger, &a.census),
@@ -152,15 +152,15 @@ fn other_scales_change_at_most_one_photon_in_a_million() {
         let original = scaled(&file, 1.0);
         for s in [1e3, 1e-3] {
             let other = scaled(&file, s);
-            let n = 1 << 18;
+            let n = 1 << 16;
             let (k, apart) = changes(&original, &other, n, |p| p / s);
             println!("{} x {s}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());
             assert!(apart <= SCALED_APART_M, "{}: {apart} m", file.display());
             photons += n;
             changed += k;
             let (a, b) = (
-                run(&original, Sequence::SobolOwen, 1 << 13, 8, 2),
-                run(&other, Sequence::SobolOwen, 1 << 13, 8, 2),
+                run(&original, Sequence::SobolOwen, 1 << 11, 8, 2),
+                run(&other, Sequence::SobolOwen, 1 << 11, 8, 2),
             );
             for receiver in 0..original.receivers.len() {
                 let (a, b) = (a.receiver_flux_lm(receiver).value, b.receiver_flux_lm(receiver).value);
@@ -181,7 +181,7 @@ fn a_kilometre_away_arrivals_agree_to_a_nanometre() {
     for file in continuous_scenes() {
         let (original, other) =
             (scaled(&file, 1.0), lengths::scene(&lengths::shifted(lengths::table(&file), by.to_array())));
-        let n = 1 << 17;
+        let n = 1 << 15;
         let (k, apart) = changes(&original, &other, n, |p| p - by);
         println!("{}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());
         assert!(apart <= SHIFTED_APART_M, "{}: {apart} m", file.display());

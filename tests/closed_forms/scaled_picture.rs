@@ -26,7 +26,7 @@ fn bits<const C: usize>(film: &Film<C>, factor: f64) -> Vec<u64> {
 /// The scene at this scale: its run, the bits of its picture in the luminance of scale 1, and how that was made.
 fn seen(file: &Table, s: f64) -> (Outcome, Vec<u64>, PictureSummary) {
     let scene = lengths::scene(&lengths::scaled(file.clone(), s));
-    let plan = plan(1 << 15, 4);
+    let plan = plan(1 << 14, 4);
     let (outcome, picture) = trace_picture(&scene, &plan, false, unwatched(&AtomicBool::new(false))).unwrap();
     let film = match &picture {
         AnyPicture::Grey(picture) => bits(&picture.film, s * s),
@@ -43,7 +43,7 @@ fn powers_of_two_change_no_bit_of_a_picture() {
             let camera = scene["camera"].as_table_mut().unwrap();
             camera.insert("lens_radius".into(), lens_radius.into());
             camera.insert("method".into(), method.into());
-            camera.insert("pixels".into(), vec![40, 30].into());
+            camera.insert("pixels".into(), vec![16, 12].into());
             camera.insert("samples".into(), 4.into());
             let at = format!("{}, {method}, lens {lens_radius}", file.display());
             let (outcome, film, summary) = seen(&scene, 1.0);

@@ -104,7 +104,7 @@ fn every_order_of_a_thin_beam_carries_its_term_of_the_series() {
         for closed in [true, false] {
             let scene = orders_scene(theta, closed);
             // Independent photons: binomial counts.
-            let n = 1u64 << 18;
+            let n = 1u64 << 16;
             let outcome = run(&scene, Sequence::Independent, n, 1, 3);
             for (count, p) in orders(&outcome, r) {
                 if n as f64 * p >= 10.0 {
@@ -114,7 +114,7 @@ fn every_order_of_a_thin_beam_carries_its_term_of_the_series() {
             }
             // A scrambled net: all events of a photon share its third coordinate, an order is one interval of it, and
             // only the two ends of an interval can be off by a photon each.
-            let (n, replicates) = (1u64 << 14, 16);
+            let (n, replicates) = (1u64 << 12, 16);
             let outcome = run(&scene, Sequence::SobolOwen, n, replicates, 4);
             let photons = n as f64 * f64::from(replicates);
             for (count, p) in orders(&outcome, r) {
@@ -145,7 +145,7 @@ fn a_pane_passes_and_sends_back_what_the_sums_say() {
                 + &rectangle("ceiling", "black", [-100.0, 1.0, CEILING], 200.0, -2.0);
             let scene = scene(&text);
             let surface = |name| scene.geometry.surface_named(name).unwrap().0 as usize;
-            let n = 1u64 << 18;
+            let n = 1u64 << 16;
             let outcome = run(&scene, Sequence::Independent, n, 1, 5);
             let transmitted = (1.0 - r) / (1.0 + r);
             for (name, p) in [("floor", transmitted), ("ceiling", 1.0 - transmitted)] {

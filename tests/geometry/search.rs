@@ -129,7 +129,7 @@ fn powers_of_two_scale_every_hit_exactly() {
     let one = moved(128, 1.0, DVec3::ZERO);
     for scale in [2f64.powi(-10), 2f64.powi(10)] {
         let other = moved(128, scale, DVec3::ZERO);
-        rays(1_000_000).for_each(|(o, d)| {
+        rays(300_000).for_each(|(o, d)| {
             let (a, s) = nearest(&one, (o, d));
             let (b, z) = nearest(&other, (o * scale, d));
             let scaled = a.map(|h| Hit {

@@ -8,11 +8,11 @@ use crate::support::caustic_views::{View, ball, pane, plan};
 use crate::support::pictures::camera;
 
 const REPLICATES: u32 = 8;
-const SEEDS: u64 = 6;
+const SEEDS: u64 = 3;
 const LADDER: [u32; 3] = [14, 16, 18];
 
 fn reference(view: &View) -> Reference {
-    splatted(&view.scene, &camera(view.spec.clone()), &plan(22, 16, 1000).unwrap()).unwrap()
+    splatted(&view.scene, &camera(view.spec.clone()), &plan(21, 16, 1000).unwrap()).unwrap()
 }
 
 fn row(view: &View, reference: &Reference, bandwidth: Bandwidth, m: u32, seeds: u64) -> Row {
@@ -43,7 +43,7 @@ fn check(view: &View) {
     assert!(figure < -1.0 / 3.0 && figure > -0.75, "{figure}");
     // A radius told to shrink as N^(-1/6): the bias grows as it at edges and as its square where the density is smooth.
     let shrunk = rows[0].radius_m * libm::exp2(-f64::from(LADDER[2] - LADDER[0]) / 6.0);
-    let narrow = row(view, &reference, Bandwidth::Radius(shrunk), LADDER[2], SEEDS / 2);
+    let narrow = row(view, &reference, Bandwidth::Radius(shrunk), LADDER[2], 2);
     let wide = row(view, &reference, Bandwidth::Radius(rows[0].radius_m), LADDER[0], SEEDS);
     let bias = rate(&[wide, narrow], Row::bias_without_noise);
     println!("{}: bias ~ N^{bias:.3} for a radius ~ N^(-1/6)", view.name);

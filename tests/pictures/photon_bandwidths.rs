@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use caustix::geometry::Geometry;
 use caustix::picture::gather::Gathered;
 use caustix::picture::gather::bandwidth::choose;
 use caustix::picture::gather::density::PROGRESSIVE_ALPHA;
@@ -102,14 +103,11 @@ fn fold_and_hill_below(x: f64) -> f64 {
     0.5 * s + 0.5 * (x + (1.0 - (TAU * x).cos()) / TAU)
 }
 
-/// What the estimate makes of a strip of pixels: (truth, value, standard error, bias figure) of each.
-fn strip(n: u64, seed: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
-    let scene = geometry(vec![floor()]);
-    let frame = frame_of(&scene);
+/// What the estimate makes of a strip of pixels on `n` photons: (truth, value, standard error, bias figure) of each.
+fn strip(scene: &Geometry, map: &PhotonMap<1>, n: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
     let width = 0.01;
-    let map = PhotonMap::build(fold_and_hill(&frame, n, seed), frame, 0.0);
-    let chosen = choose(&Footprints::new(&scene), &map, kernel, 8, 1.0);
-    let density = density_of(&scene, &map, 1.0 / n as f64, choice(chosen.bandwidth(), kernel, 8));
+    let chosen = choose(&Footprints::new(scene), map, kernel, 8, 1.0);
+    let density = density_of(scene, map, 1.0 / n as f64, choice(chosen.bandwidth(), kernel, 8));
     println!("2^{} photons, {kernel:?}: {chosen:?}", n.ilog2());
     let pixel = |i: u32, j: u32| {
         let (left, low) = (width * f64::from(i), 0.1 * f64::from(j));
@@ -117,7 +115,7 @@ fn strip(n: u64, seed: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
         let mut sums = Gathered::new(8);
         for k in 0..16u32 {
             let dx = (f64::from(k) + 0.5) / 16.0;
-            let at = on_floor(&scene, left + width * dx, low + width * u(u64::from(k), 3));
+            let at = on_floor(scene, left + width * dx, low + width * u(u64::from(k), 3));
             density.gather(&at, [PI / 16.0], lambertian(true), &mut sums);
         }
         let (error, bias) = error_and_bias(&sums);
@@ -128,10 +126,14 @@ fn strip(n: u64, seed: u64, kernel: Kernel) -> (Vec<[f64; 4]>, f64) {
 
 #[test]
 fn the_bias_figure_covers_the_bias_at_a_fold_and_shrinks_with_photons() {
+    let scene = geometry(vec![floor()]);
+    let frame = frame_of(&scene);
+    let maps = [1u64 << 16, 1 << 19, 1 << 22]
+        .map(|n| (n, PhotonMap::build(fold_and_hill(&frame, n, 5), frame, 0.0)));
     for kernel in KERNELS {
         let mut figures = Vec::new();
-        for n in [1u64 << 16, 1 << 19, 1 << 22] {
-            let (pixels, radius) = strip(n, 5, kernel);
+        for (n, map) in &maps {
+            let (pixels, radius) = strip(&scene, map, *n, kernel);
             let share =
                 |f: &dyn Fn(&[f64; 4]) -> bool| pixels.iter().filter(|r| f(r)).count() as f64 / 1000.0;
             let median = |f: &dyn Fn(&[f64; 4]) -> f64| {
@@ -149,7 +151,7 @@ fn the_bias_figure_covers_the_bias_at_a_fold_and_shrinks_with_photons() {
                 median(&|[truth, _, error, _]| error / truth),
             );
             assert!(agree >= 0.95, "{n} {kernel:?}");
-            if n == 1 << 22 {
+            if *n == 1 << 22 {
                 assert!(covered >= 0.68 && figure < 0.02, "{kernel:?}: {covered} {figure}");
             }
             figures.push(figure);

@@ -141,7 +141,7 @@ fn kept_photons_give_the_picture_again_bit_for_bit() {
     strange.photons[5].primitive = 1000;
     let refused = picture_of_saved(&scene, &plan, strange, unwatched(&AtomicBool::new(false)));
     assert_eq!(refused.unwrap_err().kind(), Kind::Range);
-    let small = ball_on_table(grey(0.4), 1 << 16, true);
+    let small = ball_on_table(grey(0.4), 1 << 18, true);
     // Photons that are too many are not handed out; all else is as without asking.
     let (asked, too_many) = pictured(&small, &plan, true);
     let (_, unasked) = pictured(&small, &plan, false);

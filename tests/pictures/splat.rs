@@ -121,7 +121,7 @@ fn in_a_closed_enclosure_distance_and_direction_do_not_matter() {
         (DVec3::new(-0.9, -0.8, 0.7), DVec3::new(1.0, 1.0, -1.0)),
     ] {
         let spec = CameraSpec::pinhole(position, look_at, DVec3::Z, 100.0, [5, 3]);
-        let got = splatted(&enclosure, &spec, &plan(1 << 19, 16), Grey);
+        let got = splatted(&enclosure, &spec, &plan(1 << 18, 16), Grey);
         assert_pixels(&format!("{position}"), &got, &[exact; 15], 16, 0.02);
     }
 }
@@ -163,7 +163,7 @@ fn a_polygon_light_gives_the_luminance_of_its_form_factor() {
             mean
         })
         .collect();
-    let got = splatted(&lit, &spec, &plan(1 << 21, 16), Grey);
+    let got = splatted(&lit, &spec, &plan(1 << 20, 16), Grey);
     assert_pixels("polygon", &got, &exact, 16, 0.02);
 }
 

@@ -19,14 +19,17 @@ use std::path::{Path, PathBuf};
 
 use crate::support::angles::Luminaire;
 use crate::support::data;
-use crate::support::density::{Density, Measure, ends};
+use crate::support::density::{Density, Measure, PolarCdf, ends};
 use crate::support::given::of_grid;
 use crate::support::sphere_table::SphereTable;
 use crate::support::statistics::{chi_square, kolmogorov_smirnov, sidak};
 
-const SAMPLES: u64 = 200_000;
-/// Samples for the azimuth given the polar angle: each costs an integral over the whole turn.
-const CONDITIONAL_SAMPLES: usize = 20_000;
+/// Samples where a density a little wrong must be refused.
+const SAMPLES: usize = 200_000;
+/// Samples of one file of many: a difference of twice the size shows as clearly.
+const FEWER: usize = SAMPLES / 4;
+/// Of so many samples one serves for the azimuth given the polar angle: each costs an integral over the whole turn.
+const CONDITIONAL_STEP: usize = 10;
 /// Chance of a false alarm over all files of a test together.
 const FAMILY: f64 = 0.01;
 const TESTS_A_FILE: usize = 4;
@@ -43,13 +46,14 @@ fn emitter(photometry: &Photometry) -> Photometric {
 }
 
 /// (polar angle, azimuth) in degrees of directions that photons of this file start with.
-fn sampled_angles(photometry: &Photometry, density: &Density<'_>, seed: u64) -> Vec<(f64, f64)> {
-    angles_by(Sampling::default(), photometry, density, seed)
+fn sampled_angles(n: usize, photometry: &Photometry, density: &Density<'_>, seed: u64) -> Vec<(f64, f64)> {
+    angles_by(Sampling::default(), n, photometry, density, seed)
 }
 
 /// The same by another way of sampling tables.
 fn angles_by(
     sampling: Sampling,
+    n: usize,
     photometry: &Photometry,
     density: &Density<'_>,
     seed: u64,
@@ -59,7 +63,7 @@ fn angles_by(
     let frame = Luminaire::new(AIM, UP);
     (0..)
         .filter_map(|i| emitters.emit(sampling, &mut Coordinates::new(&points, i, true)))
-        .take(SAMPLES as usize)
+        .take(n)
         .map(|(_, emission)| {
             let angles = frame.angles_deg(photometry.web.photometric_type, emission.direction);
             density.polar_and_azimuth(angles)
@@ -100,21 +104,58 @@ fn shifted(breaks: &[f64], least: usize) -> Vec<f64> {
     edges
 }
 
-/// p-values: chi-square on the file's cells, on shifted cells, Kolmogorov-Smirnov on both angles.
+/// Masses of the cells between edges.
+struct Cells {
+    p_edges: Vec<f64>,
+    q_edges: Vec<f64>,
+    masses: Vec<f64>,
+}
+
+impl Cells {
+    fn new(density: &Density<'_>, p_edges: Vec<f64>, q_edges: Vec<f64>) -> Self {
+        let masses = density.masses(&p_edges, &q_edges);
+        Self { p_edges, q_edges, masses }
+    }
+
+    fn p_value(&self, samples: &[(f64, f64)]) -> f64 {
+        let (counts, outside) = histogram(samples, &self.p_edges, &self.q_edges);
+        if outside > 0 { 0.0 } else { chi_square(&counts, &self.masses).p_value }
+    }
+}
+
+/// What samples are judged by: the quadrature is done once for all sets of them.
+struct Judge<'w> {
+    density: Density<'w>,
+    cells: [Cells; 2],
+    polar: PolarCdf,
+}
+
+impl<'w> Judge<'w> {
+    fn new(density: Density<'w>) -> Self {
+        let cells = [
+            Cells::new(&density, density.p_breaks.clone(), density.q_breaks.clone()),
+            Cells::new(&density, shifted(&density.p_breaks, 17), shifted(&density.q_breaks, 11)),
+        ];
+        Self { cells, polar: density.polar_cdf(), density }
+    }
+
+    /// p-values: chi-square on the file's cells, on shifted cells, Kolmogorov-Smirnov on both angles.
+    fn p_values(&self, samples: &[(f64, f64)]) -> [f64; TESTS_A_FILE] {
+        let polar = samples.iter().map(|s| self.polar.at(s.0)).collect();
+        let some = samples.iter().take(samples.len() / CONDITIONAL_STEP);
+        let azimuth = some.map(|s| self.density.azimuth_cdf(s.0, s.1)).collect();
+        let [cells, shifted] = &self.cells;
+        [
+            cells.p_value(samples),
+            shifted.p_value(samples),
+            kolmogorov_smirnov(polar).p_value,
+            kolmogorov_smirnov(azimuth).p_value,
+        ]
+    }
+}
+
 fn p_values(samples: &[(f64, f64)], density: &Density<'_>) -> [f64; TESTS_A_FILE] {
-    let chi = |p_edges: &[f64], q_edges: &[f64]| {
-        let (counts, outside) = histogram(samples, p_edges, q_edges);
-        if outside > 0 { 0.0 } else { chi_square(&counts, &density.masses(p_edges, q_edges)).p_value }
-    };
-    let cdf = density.polar_cdf();
-    let polar = samples.iter().map(|s| cdf.at(s.0)).collect();
-    let azimuth = samples.iter().take(CONDITIONAL_SAMPLES).map(|s| density.azimuth_cdf(s.0, s.1)).collect();
-    [
-        chi(&density.p_breaks, &density.q_breaks),
-        chi(&shifted(&density.p_breaks, 17), &shifted(&density.q_breaks, 11)),
-        kolmogorov_smirnov(polar).p_value,
-        kolmogorov_smirnov(azimuth).p_value,
-    ]
+    Judge::new(density.clone()).p_values(samples)
 }
 
 /// Tests these files; the smallest p-value is asserted against the corrected level.
@@ -125,7 +166,7 @@ fn check_density(files: &[PathBuf]) {
         let name = path.file_name().unwrap().to_str().unwrap();
         let photometry = lm63::read(path).unwrap();
         let density = Density::new(&photometry.web);
-        let samples = sampled_angles(&photometry, &density, 1 + k as u64);
+        let samples = sampled_angles(FEWER, &photometry, &density, 1 + k as u64);
         let p = p_values(&samples, &density);
         println!(
             "{name}: p cells {:.4}, shifted cells {:.4}, polar {:.4}, azimuth {:.4}",
@@ -179,10 +220,11 @@ fn own_files_are_sampled_with_their_density_by_every_rejection() {
     let level = sidak(FAMILY, files.len() * TESTS_A_FILE * Rejection::ALL.len());
     for (k, path) in files.iter().enumerate() {
         let photometry = lm63::read(path).unwrap();
-        let density = Density::new(&photometry.web);
+        let judge = Judge::new(Density::new(&photometry.web));
         for rejection in Rejection::ALL {
-            let samples = angles_by(Sampling::Rejection(rejection), &photometry, &density, 100 + k as u64);
-            let p = p_values(&samples, &density);
+            let sampling = Sampling::Rejection(rejection);
+            let samples = angles_by(sampling, FEWER / 2, &photometry, &judge.density, 100 + k as u64);
+            let p = judge.p_values(&samples);
             println!("{} {}: {p:.4?}", path.display(), rejection.name());
             assert!(p.into_iter().all(|p| p > level), "{} {}: {p:?}", path.display(), rejection.name());
         }
@@ -218,7 +260,7 @@ fn wrong_densities_are_refused() {
     let level = sidak(FAMILY, 400);
     let photometry = lm63::read(data::own_file("floodlight_b.ies")).unwrap();
     let right = Density::new(&photometry.web);
-    let samples = sampled_angles(&photometry, &right, 5);
+    let samples = sampled_angles(SAMPLES, &photometry, &right, 5);
     assert!(p_values(&samples, &right).into_iter().all(|p| p > level));
 
     // The weight of a polar angle for that of a latitude.
@@ -262,7 +304,7 @@ fn wrong_densities_are_refused() {
 fn a_turn_by_one_plane_is_refused() {
     let photometry = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
     assert_eq!(photometry.web.photometric_type, PhotometricType::C);
-    let samples = sampled_angles(&photometry, &Density::new(&photometry.web), 6);
+    let samples = sampled_angles(SAMPLES, &photometry, &Density::new(&photometry.web), 6);
     let mut turned = photometry.web.clone();
     let n_v = turned.vertical_deg.len();
     turned.candela.rotate_right(n_v);

@@ -16,13 +16,13 @@ fn compare(output: &Path) -> Command {
             "--photons",
             "2^14",
             "--reference-photons",
-            "2^19",
+            "2^17",
             "--seeds",
             "2",
             "--cells",
             "16,32",
         ])
-        .args(["--variants", "mc,qmc:next-point,qmc-inverse-reuse", "--from", "2^11", "-o"])
+        .args(["--variants", "mc,qmc,qmc-inverse-reuse", "--from", "2^11", "-o"])
         .arg(output)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())

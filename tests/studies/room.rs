@@ -62,7 +62,7 @@ fn colour_in_an_integrating_sphere() {
         let scene = sphere(&format!("type = \"lambertian\"\nreflectance = {rgb:?}"), "");
         assert!(requirements(&scene).contains(&"colour"));
         let indirect = luminance(rgb.map(|rho| rho / (1.0 - rho))) * 1000.0;
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 15, 16, seed);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 14, 16, seed);
         let label = format!("{rgb:?}");
         assert_cells(&label, &scene, &outcome, 0, &[indirect / AREA; 32]);
         assert_total(&label, &outcome, outcome.receiver_flux_lm(0), indirect);
@@ -197,7 +197,7 @@ fn the_room_is_closed_and_has_276_triangles() {
         assert!((volume(name) - expected).abs() < 1e-9, "{name}: {} {expected}", volume(name));
     }
     for (sequence, seed) in [(Sequence::SobolOwen, 1), (Sequence::Independent, 2)] {
-        let outcome = run(&scene, sequence, 1 << 16, 8, seed);
+        let outcome = run(&scene, sequence, 1 << 14, 8, seed);
         assert_eq!(outcome.ledger.escaped, 0);
         assert!(outcome.totals().sum.iter().sum::<u64>() > outcome.photons);
     }
@@ -258,11 +258,11 @@ fn weights_in_a_coloured_sphere_are_the_partial_sums_of_the_series() {
 #[test]
 fn weights_and_roulette_agree_in_the_room() {
     let dim = room("[0.5, 0.3, 0.4]", 30);
-    let outcome = run(&dim, Sequence::SobolOwen, 1 << 15, 16, 7);
+    let outcome = run(&dim, Sequence::SobolOwen, 1 << 14, 16, 7);
     let seeds = 16;
     let sets: Vec<Vec<f64>> = (1..=seeds)
         .map(|seed| {
-            let m = measured(&dim, Sequence::SobolOwen, 100 + seed, 1 << 13);
+            let m = measured(&dim, Sequence::SobolOwen, 100 + seed, 1 << 12);
             m.radiance.iter().map(|l| PI * luminance(*l)).collect()
         })
         .collect();

@@ -71,7 +71,7 @@ impl<'w> Density<'w> {
 
     /// Integrals over solid angle (so lm, without the file's factor) of the cells between these edges, `[p][q]` in rows.
     pub fn masses(&self, p_edges: &[f64], q_edges: &[f64]) -> Vec<f64> {
-        let (along_p, along_q) = (Gauss::new(8), Gauss::new(2));
+        let (along_p, along_q) = (Gauss::new(8), linear());
         let p_panels = sorted(p_edges.iter().chain(&self.p_breaks).copied());
         let q_panels = sorted(q_edges.iter().chain(&self.q_breaks).copied());
         let columns = q_edges.len() - 1;
@@ -107,7 +107,7 @@ impl<'w> Density<'w> {
     /// The distribution function of the polar angle.
     pub fn polar_cdf(&self) -> PolarCdf {
         const PARTS: usize = 8;
-        let rule = Gauss::new(2);
+        let rule = linear();
         let marginal =
             |p: f64| self.weight(p) * rule.over_panels(&self.q_breaks, |q| self.intensity_cd(p, q));
         let along_p = Gauss::new(4);
@@ -128,7 +128,7 @@ impl<'w> Density<'w> {
 
     /// The conditional distribution function of the azimuth at a polar angle.
     pub fn azimuth_cdf(&self, p: f64, q: f64) -> f64 {
-        let rule = Gauss::new(2);
+        let rule = linear();
         let (mut below, mut total) = (0.0, 0.0);
         for b in self.q_breaks.windows(2) {
             let panel = rule.integrate(b[0], b[1], |q| self.intensity_cd(p, q));
@@ -170,6 +170,11 @@ impl PolarCdf {
             panel.inside * x * x * (3.0 - 2.0 * x) + m0 * x * (1.0 - x).powi(2) - m1 * x * x * (1.0 - x);
         (panel.below + cubic) / self.mass
     }
+}
+
+/// Exact along the azimuth, where the candela between neighbouring angles of the file is linear.
+fn linear() -> Gauss {
+    Gauss::new(1)
 }
 
 /// The first and the last of a list.
