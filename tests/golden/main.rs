@@ -3,8 +3,7 @@
 //!
 //! The scenes are those of `scenes/`, made small, and those of `scenes/` beside this file, which together
 //! name every emitter, material, shape, receiver and camera that a scene file can; beside them stand runs of
-//! the options. All is run with 1 and with 3 threads, but for
-//! those of a sequence or a variant (with 3) and what has no threads. Only the command line is used, nothing of the library:
+//! the options. All is run with 1 and with 3 threads. Only the command line is used, nothing of the library:
 //! the test outlives any change of the code's inside.
 //!
 //! What is hashed is content, not bytes: of an EXR every channel's values and every attribute, of a CSV every

@@ -14,7 +14,7 @@ pub struct Run {
 pub enum Threads {
     /// 1, and again 3.
     Both,
-    /// 3 alone: a run that cannot be made short, or one of many kinds whose photons are shared out alike.
+    /// 3 alone: a run that cannot be made short.
     Three,
     /// The command has no `--threads`.
     NotAsked,
@@ -122,16 +122,15 @@ fn scenes(workplace: &Workplace, runs: &mut Vec<Run>) {
 fn options(runs: &mut Vec<Run>) {
     for sequence in SEQUENCES {
         // A sequence that is not randomised has one replicate.
-        let line = format!("render {ONE_EMITTER} --photons {PHOTONS} --sequence {sequence} -o {OUT}");
-        add(runs, Threads::Three, format!("sequence {sequence}"), &[line]);
+        let arguments = format!("{ONE_EMITTER} --photons {PHOTONS} --sequence {sequence}");
+        render(runs, format!("sequence {sequence}"), &arguments);
     }
     for variant in VARIANTS {
         // Each replicate of retries with the next point counts a million points ahead.
         let replicates = if variant.ends_with(":next-point") { 2 } else { 8 };
-        let line = format!(
-            "render {ONE_EMITTER} --photons {PHOTONS} --variant {variant} --replicates {replicates} -o {OUT}"
-        );
-        add(runs, Threads::Three, format!("variant {variant}"), &[line]);
+        let arguments =
+            format!("{ONE_EMITTER} --photons {PHOTONS} --variant {variant} --replicates {replicates}");
+        render(runs, format!("variant {variant}"), &arguments);
     }
     for variant in ["mc", "mc:table", "qmc", "qmc-inverse"] {
         let arguments = format!("{TWO_EMITTERS} --photons {PHOTONS} --variant {variant}");
@@ -178,7 +177,7 @@ fn comparisons(runs: &mut Vec<Run>) {
     let compare = format!("compare {few} --seeds 2 --cells 8,16 -o {OUT}");
     add(runs, Threads::Both, "compare".into(), &[compare]);
     let full = format!("compare {ONE_EMITTER} {few} --seeds 1 --cells 12 --seed 5 --full -o {OUT}");
-    add(runs, Threads::Three, "compare full".into(), &[full]);
+    add(runs, Threads::Both, "compare full".into(), &[full]);
     let room = format!("compare {OWN}/small_room.toml --seeds 1 -o {OUT}");
     add(runs, Threads::Three, "compare room".into(), &[room]);
 }
