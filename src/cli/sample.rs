@@ -17,7 +17,7 @@ use crate::lab::certificate::{Certificate, Density, Judge, PointKind, REPLICATES
 use crate::photometry::PhotometricType;
 use crate::report::certificate::CertificateReport;
 use crate::report::json::json;
-use crate::run::Variant;
+use crate::run::Algorithm;
 use crate::sample::grid::Grid;
 
 use super::{Done, SampleArgs, algorithm, exit, in_option, print, say, warn};
@@ -43,7 +43,7 @@ fn verdict(certificate: &Certificate) -> u8 {
 fn certify(args: &SampleArgs) -> Result<CertificateReport> {
     let number = parse_count(&args.samples).map_err(|e| in_option("-n ", &e))?;
     let algorithm =
-        algorithm(Variant::QmcInverseReuse.into(), args.variant.as_ref(), args.sequence.as_ref())?;
+        algorithm(Algorithm::default(), args.variant.as_ref(), args.sequence.as_ref())?;
     let photometry = lm63::read(&args.file)?;
     if !args.json {
         warn(&photometry.warnings);
