@@ -42,8 +42,7 @@ fn verdict(certificate: &Certificate) -> u8 {
 
 fn certify(args: &SampleArgs) -> Result<CertificateReport> {
     let number = parse_count(&args.samples).map_err(|e| in_option("-n ", &e))?;
-    let algorithm =
-        algorithm(Algorithm::default(), args.variant.as_ref(), args.sequence.as_ref())?;
+    let algorithm = algorithm(Algorithm::default(), args.variant.as_ref(), args.sequence.as_ref())?;
     let photometry = lm63::read(&args.file)?;
     if !args.json {
         warn(&photometry.warnings);

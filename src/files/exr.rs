@@ -31,6 +31,23 @@ pub enum Data<'a> {
     U32(&'a [u32]),
 }
 
+/// Numbers as 32-bit floats, which a file holds.
+///
+/// # Errors
+/// [`Kind::Range`] for a finite number that a float cannot hold: it would be written as infinite.
+pub fn floats(values: impl IntoIterator<Item = f64>) -> Result<Vec<f32>> {
+    let float = |value: f64| match value as f32 {
+        float if float.is_infinite() && value.is_finite() => {
+            let found = format!("{value:e} in a cell");
+            let required = format!("at most {:e}, which a 32-bit float holds", f32::MAX);
+            Err(Diagnostic::new(Kind::Range, found, required)
+                .hint("look at the lamp's flux and the receiver's size; report.json has the numbers"))
+        }
+        float => Ok(float),
+    };
+    values.into_iter().map(float).collect()
+}
+
 /// An attribute's value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
@@ -219,6 +236,15 @@ mod tests {
             ("caustix.photons".into(), Value::I64(1 << 40)),
             ("units".into(), Value::Text("lx".into())),
         ]
+    }
+
+    #[test]
+    fn numbers_beyond_a_float_are_refused_and_infinities_kept() {
+        assert_eq!(floats([1.5, -2.0, f64::INFINITY]).unwrap(), [1.5, -2.0, f32::INFINITY]);
+        assert!(floats([f64::NAN]).unwrap()[0].is_nan());
+        let error = floats([1.0, 8.2e47]).unwrap_err();
+        assert_eq!(error.kind(), Kind::Range);
+        assert!(error.to_string().contains("8.2e47"), "{error}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
-use crate::files::exr::{Channel, Data, Light, write_maps};
+use crate::files::exr::{Channel, Data, Light, floats, write_maps};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
@@ -29,7 +29,7 @@ fn exr_size(cells: Cells) -> (usize, usize) {
 /// attributes. The faces of a mesh fill rows of equal length, NaN beyond the last.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A number beyond a 32-bit float; a file that cannot be written.
 pub fn write_exr(
     path: &Path,
     scene: &Scene,
@@ -38,13 +38,13 @@ pub fn write_exr(
     statistics: &ReceiverStatistics,
 ) -> Result<()> {
     let (width, height) = exr_size(receiver.cells);
-    let floats = |values: &[f64]| -> Vec<f32> {
-        let mut out: Vec<f32> = values.iter().map(|v| *v as f32).collect();
+    let padded = |values: &[f64]| -> Result<Vec<f32>> {
+        let mut out = floats(values.iter().copied()).map_err(|e| e.in_file(path))?;
         out.resize(width * height, f32::NAN);
-        out
+        Ok(out)
     };
-    let illuminance = floats(&statistics.illuminance_lx);
-    let error = floats(&statistics.standard_error_lx);
+    let illuminance = padded(&statistics.illuminance_lx)?;
+    let error = padded(&statistics.standard_error_lx)?;
     let mut hits: Vec<u32> = statistics.hits.iter().map(|h| u32::try_from(*h).unwrap_or(u32::MAX)).collect();
     hits.resize(width * height, 0);
     let channels = [

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::exr::{Channel, Data, Light, Value, write_maps};
+use crate::files::exr::{Channel, Data, Light, Value, floats, write_maps};
 use crate::picture::camera::Film;
 use crate::run::Plan;
 use crate::scene::Scene;
@@ -23,7 +23,7 @@ pub fn tone<const C: usize>(spec: &CameraSpec, film: &Film<C>) -> Tone {
 /// what else is to be said.
 ///
 /// # Errors
-/// A film whose numbers do not fit its sides; a file that cannot be written.
+/// A film whose numbers do not fit its sides; a number beyond a 32-bit float; a file that cannot be written.
 pub fn write_exr<const C: usize>(
     path: &Path,
     spec: &CameraSpec,
@@ -36,11 +36,17 @@ pub fn write_exr<const C: usize>(
         let found = format!("{pixels} pixels of a picture of {width} x {height}");
         return Err(Diagnostic::new(Kind::Range, found, "one value, error and bias for each pixel"));
     }
-    let names: &[&str] = if C == 1 { &["Y"] } else { &["R", "G", "B"] };
-    let colour = |c: usize| film.value.iter().map(|v| v[c] as f32).collect();
-    let mut planes: Vec<(&str, Vec<f32>)> = names.iter().enumerate().map(|(c, n)| (*n, colour(c))).collect();
-    planes.push(("standard_error", film.standard_error.iter().map(|e| *e as f32).collect()));
-    planes.push(("bias", film.bias.iter().map(|b| *b as f32).collect()));
+    let names: &[&'static str] = if C == 1 { &["Y"] } else { &["R", "G", "B"] };
+    let mut planes: Vec<(&str, Vec<f32>)> = Vec::new();
+    let mut plane = |name: &'static str, values: &mut dyn Iterator<Item = f64>| -> Result<()> {
+        planes.push((name, floats(values).map_err(|e| e.in_file(path))?));
+        Ok(())
+    };
+    for (c, name) in names.iter().enumerate() {
+        plane(name, &mut film.value.iter().map(|v| v[c]))?;
+    }
+    plane("standard_error", &mut film.standard_error.iter().copied())?;
+    plane("bias", &mut film.bias.iter().copied())?;
     let channels: Vec<Channel<'_>> =
         planes.iter().map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
     let attributes = [attributes, &picture_attributes(&tone(spec, film))].concat();
