@@ -13,6 +13,7 @@ mod make_ies;
 
 mod broken_scene;
 mod damage;
+mod mistakes;
 mod photometry_damaged;
 mod photometry_own;
 mod photometry_real;
