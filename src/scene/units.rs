@@ -54,13 +54,15 @@ fn with_cosine(scene: &Scene) -> Option<Warning> {
         code: "cosine-in-table",
         message: format!(
             "the scattering table of {} is far from reciprocal, by {:.0} %, but by {:.0} % if its values are divided by the cosine \
-             of the scattered light's angle: were they multiplied by it?",
+             of the scattered light's angle",
             names.join(", "),
             100.0 * worst.as_it_stands,
             100.0 * worst.divided
         ),
         surfaces,
         share: None,
-        remedy: "a table holds f in 1/sr without the cosine: divide the values by it (`caustix bsdf` tells the albedo)".into(),
+        remedy: "was the value multiplied by the cosine? a table holds f in 1/sr without it: divide by it (`caustix bsdf` tells \
+                 the albedo)"
+            .into(),
     })
 }
