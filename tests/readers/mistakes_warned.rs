@@ -256,6 +256,7 @@ fn volumes_and_counts_are_told_as_one_would_say_them() {
     let said: Vec<_> = scene.warnings.iter().map(ToString::to_string).collect();
     assert!(said.iter().any(|w| w.contains("of volume -0.06400 m3")), "{said:?}");
 
+    let scene = self::scene(&format!("{LAMP}{BLACK}{PLATE}{RECEIVER}"), &[]);
     for (replicates, words) in [(1, "= 1 replicate x 1 024;"), (2, "= 2 replicates x 1 024;")] {
         let outcome = run(&scene, Sequence::SobolOwen, 1 << 10, replicates, 1);
         let receivers = scene.receivers.iter().enumerate();
