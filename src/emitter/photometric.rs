@@ -37,6 +37,8 @@ pub struct Photometric {
     axes: DMat3,
     position: DVec3,
     flux_lm: f64,
+    /// What the file says, with its factors, lm.
+    file_flux_lm: f64,
     /// Candela per unit of the grid's value.
     scale: f64,
     /// The longest side of the file's luminous opening, m.
@@ -83,14 +85,24 @@ impl Photometric {
     ) -> Result<Self, Invalid> {
         let full = photometry.web.full_grid();
         let grid = Grid::new(&full.polar_rad, &full.azimuth_rad, &full.intensity_cd).map_err(of_file)?;
+        let file_flux_lm = grid.integral() * photometry.factor();
         let flux_lm = match flux_lm {
             Some(flux_lm) => FLUX.check("flux_lm", flux_lm)?,
-            None => positive("flux_lm", grid.integral() * photometry.factor(), "a file of positive flux")?,
+            None => positive("flux_lm", file_flux_lm, "a file of positive flux")?,
         };
         let axes = grid_axes(photometry.web.photometric_type, frame)?;
         let (scale, position) = (flux_lm / grid.integral(), COORDINATE.vector("position", position)?);
         let opening_m = photometry.opening.size_m.into_iter().fold(0.0, f64::max);
-        Ok(Self { grid: Arc::new(grid), axes, position, flux_lm, scale, opening_m, uniform: None })
+        Ok(Self {
+            grid: Arc::new(grid),
+            axes,
+            position,
+            flux_lm,
+            file_flux_lm,
+            scale,
+            opening_m,
+            uniform: None,
+        })
     }
 
     /// The same light for references: directions uniform in solid angle where the table is not zero, with weights (1 on
@@ -101,6 +113,12 @@ impl Photometric {
     pub(super) fn with_weights(&self) -> Result<Self, Invalid> {
         let map = UniformMap::new(&self.grid).map_err(of_file)?;
         Ok(Self { uniform: Some(Arc::new(map)), ..self.clone() })
+    }
+
+    /// The flux of the file as it stands, times ballast factor and (1986, 1991) field 12, lm: what the lamp emits where nothing
+    /// rescales it.
+    pub fn file_flux_lm(&self) -> f64 {
+        self.file_flux_lm
     }
 
     /// The longest side of the luminous opening that the file was measured with, m; 0 where it is a point. Light leaves from

@@ -41,3 +41,13 @@ impl std::fmt::Display for Warning {
         write!(f, "{word}: {}; {}", self.message, self.remedy)
     }
 }
+
+/// A number with four significant digits, as messages tell it.
+pub fn four_digits(x: f64) -> String {
+    let size = x.abs();
+    if size > 0.0 && !(1e-4..1e9).contains(&size) {
+        return format!("{x:.3e}");
+    }
+    let digits = if size > 0.0 { (3 - size.log10().floor() as i32).max(0) } else { 0 };
+    format!("{x:.*}", digits as usize)
+}

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::visible;
 use crate::math::digest::sha256_hex;
 
 /// Largest file that a scene may name (mesh, photometric file, image): 1 GiB.
@@ -84,7 +85,7 @@ fn built_in_file(path: &str) -> Result<&'static [u8]> {
 
 /// Open a regular file of at most `limit_bytes`. A pipe or a device is refused: it could block or never end.
 fn open(path: &Path, limit_bytes: u64) -> Result<File> {
-    let shown = path.display();
+    let shown = visible(&path.display().to_string());
     let io = |why: String| Diagnostic::new(Kind::Io, why, "a file that can be read");
     // The kind is asked before opening: opening a pipe waits for its other end.
     let metadata = std::fs::metadata(path)
@@ -99,7 +100,7 @@ fn open(path: &Path, limit_bytes: u64) -> Result<File> {
 }
 
 fn too_large(path: &Path, limit_bytes: u64) -> Diagnostic {
-    let (shown, limit) = (path.display(), limit_bytes >> 20);
+    let (shown, limit) = (visible(&path.display().to_string()), limit_bytes >> 20);
     let found = format!("the file `{shown}`, which is larger than {limit} MiB");
     Diagnostic::new(Kind::Limit, found, format!("a file of at most {limit} MiB"))
 }

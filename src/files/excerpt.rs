@@ -9,6 +9,12 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
+/// The text with its control characters escaped; quotes and backslashes stand as they are.
+pub(crate) fn visible(text: &str) -> String {
+    let escaped = |c: char| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() };
+    text.chars().map(escaped).collect()
+}
+
 /// Line and column, both from 1, of a byte in the text; the column counts characters. CR LF, LF and CR end lines.
 pub(crate) fn line_column(text: &str, offset: usize) -> (usize, usize) {
     let (mut line, mut column) = (1, 1);

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use image::{ImageError, ImageFormat, ImageReader, Limits};
+use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::HeightImage;
@@ -32,6 +32,15 @@ pub fn parse(bytes: &[u8], [low_m, high_m]: [f64; 2]) -> Result<HeightImage> {
     let grey = reader.decode().map_err(no_png)?.into_luma16();
     let height_m = |&g: &u16| low_m + (high_m - low_m) * (f64::from(g) / 65535.0);
     Ok(HeightImage::new(width as usize, height as usize, grey.as_raw().iter().map(height_m).collect())?)
+}
+
+/// Whether a PNG holds its heights in 8 bits or fewer.
+pub fn has_8_bits(bytes: &[u8]) -> bool {
+    let decoder = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png).into_decoder();
+    decoder.is_ok_and(|decoder| {
+        let colour = decoder.color_type();
+        colour.bytes_per_pixel() == colour.channel_count()
+    })
 }
 
 #[cfg(test)]

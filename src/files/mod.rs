@@ -9,6 +9,7 @@ mod excerpt;
 pub mod exr;
 pub mod height_image;
 pub mod lm63;
+mod mesh_formats;
 pub mod obj;
 mod obj_text;
 pub mod parts;

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::mesh_formats;
 use crate::files::obj_text::{Checked, check};
 use crate::geometry::mesh::NO_NORMAL;
 use crate::geometry::{Mesh, MeshParts, Smoothing, Transform};
@@ -35,8 +36,14 @@ pub fn parse_obj(bytes: &[u8], name: &Path, options: &ObjOptions) -> Result<(Mes
 }
 
 fn parse(bytes: &[u8], options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
+    if let Some(what) = mesh_formats::other(bytes) {
+        let found = format!("{what} file, a format that is not read");
+        let d = Diagnostic::new(Kind::Unavailable, found, "a mesh in an OBJ file").at(1, 1);
+        return Err(d.hint("export the mesh as OBJ, or convert the file (Blender, MeshLab)"));
+    }
     // Names and comments may be in any encoding; geometry is ASCII.
-    let mut checked = check(&String::from_utf8_lossy(bytes))?;
+    let text = String::from_utf8_lossy(bytes);
+    let mut checked = check(text.strip_prefix('\u{feff}').unwrap_or(&text))?;
     let load = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
     let models =
         tobj::load_obj_buf(&mut checked.geometry.as_bytes(), &load, |_| Err(tobj::LoadError::GenericFailure));

@@ -155,6 +155,21 @@ impl Mesh {
         n.try_normalize().unwrap_or(facet)
     }
 
+    /// The largest angle between a smooth normal at a corner and its facet's, radians; 0 where none are smooth.
+    pub fn largest_tilt(&self) -> f64 {
+        let of_face = |face: usize| {
+            let [a, b, c] = self.triangle(face);
+            let facet = (b - a).cross(c - a).normalize_or_zero();
+            let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+            let tilt = |n: DVec3| libm::atan2(facet.cross(n).length(), facet.dot(n));
+            corners
+                .map(|weights| tilt(self.shading_normal(face, weights, facet)))
+                .into_iter()
+                .fold(0.0, f64::max)
+        };
+        if self.is_smooth() { (0..self.triangles.len()).map(of_face).fold(0.0, f64::max) } else { 0.0 }
+    }
+
     /// The mesh, moved, and checked again (rounding may weld what was apart).
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::openings::{opening, parts};
+use crate::error::warning::four_digits;
 use crate::error::{Diagnostic, Invalid, Kind};
 
 /// Findings about a mesh whose equal vertices have been welded. Faces go by their numbers in the file, from 1.
@@ -110,8 +111,8 @@ impl Topology {
             warn(found, "neighbours run through their edge in opposite directions");
         }
         if self.is_closed() && self.signed_volume_m3 < 0.0 {
-            let found =
-                format!("a closed mesh of volume {:e} m3: its normals point inward", self.signed_volume_m3);
+            let volume_m3 = four_digits(self.signed_volume_m3);
+            let found = format!("a closed mesh of volume {volume_m3} m3: its normals point inward");
             warn(found, "normals that point outward, unless the inside is meant to be the front");
         }
         list

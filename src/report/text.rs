@@ -21,9 +21,10 @@ pub fn summary(
         let each = grouped(photons / u64::from(replicates.max(1)));
         let (variant, sequence) = (plan.algorithm().variant.name(), plan.algorithm().sequence.name());
         writeln!(out, "scene      {}", scene.identity.name)?;
+        let plural = if replicates == 1 { "" } else { "s" };
         writeln!(
             out,
-            "photons    {} = {replicates} replicates x {each}; {variant}, {sequence}, seed {}",
+            "photons    {} = {replicates} replicate{plural} x {each}; {variant}, {sequence}, seed {}",
             grouped(photons),
             plan.seed()
         )?;
@@ -49,7 +50,7 @@ pub fn summary(
         )?;
         let exceptions = &census.exceptions;
         let [corrected, skipped, below] =
-            [exceptions.corrected_directions, exceptions.skipped_crossings, exceptions.below_horizon];
+            [exceptions.corrected(), exceptions.skipped_crossings, exceptions.below_horizon];
         if corrected + skipped > 0 {
             let (kept, repeated) = (grouped(corrected), grouped(skipped));
             writeln!(

@@ -1,8 +1,8 @@
 //! What a run says of itself: where it was found that the scene is not what its numbers would be right for, when it was
 //! built and by the photons.
 
-use crate::error::warning::{Severity, Warning};
-use crate::geometry::SurfaceId;
+use crate::error::warning::{Severity, Warning, four_digits};
+use crate::geometry::{Shape, SurfaceId};
 use crate::scene::Scene;
 use crate::scene::receiver::ReceiverSide;
 use crate::scene::sheets::{CLASH, Clash};
@@ -19,6 +19,8 @@ const KILLED_IN_DOUBT: f64 = 1e-6;
 const KILLED_WRONG: f64 = 1e-3;
 /// Smooth normals that turn more than this share of photons back change what a mesh does.
 const CORRECTED: f64 = 0.01;
+/// Smooth normals this far off their facets round an edge.
+const OF_AN_EDGE_DEG: f64 = 30.0;
 /// Of an emitter's photons: meeting nothing, this many are no accident.
 const MISSED: f64 = 0.999;
 /// Of so many, at least: a few may miss by chance.
@@ -179,18 +181,46 @@ impl Run<'_> {
     }
 
     fn corrected(&self) -> Option<Warning> {
-        let share = self.outcome.census.exceptions.corrected_directions as f64 / self.photons;
-        (share > CORRECTED).then(|| Warning {
+        let exceptions = &self.outcome.census.exceptions;
+        let share = exceptions.corrected() as f64 / self.photons;
+        if share <= CORRECTED {
+            return None;
+        }
+        // The most first; what adds little is not named.
+        let mut by_surface: Vec<_> = exceptions.corrected_directions.iter().collect();
+        by_surface.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        let is_many = |count: u64| count as f64 > 0.5 * CORRECTED * self.photons;
+        let named = by_surface.iter().enumerate().filter(|(k, (_, count))| *k == 0 || is_many(**count));
+        let ids: Vec<SurfaceId> = named.map(|(_, (surface, _))| **surface).collect();
+        let surfaces: Vec<String> = ids.iter().map(|s| self.name(*s)).collect();
+        let tilt_deg = ids.iter().map(|s| self.tilt_deg(*s)).fold(0.0, f64::max);
+        let remedy = if tilt_deg > OF_AN_EDGE_DEG {
+            "`smooth = false` for a body with sharp edges (or export it with normals that do not round them); for a curved one a \
+             finer mesh, or an exact shape"
+        } else {
+            "use a finer mesh, or an exact shape"
+        };
+        Some(Warning {
             severity: Severity::Doubtful,
             code: "corrected-directions",
             message: format!(
-                "smooth normals sent light to the wrong side of its facet, {} times a photon, and it was mirrored back",
+                "smooth normals of {}, up to {tilt_deg:.0} degrees off their facets, sent light to the wrong side of the facet, \
+                 {} times a photon, and it was mirrored back",
+                surfaces.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "),
                 percent(share)
             ),
-            surfaces: Vec::new(),
+            surfaces,
             share: Some(share),
-            remedy: "use a finer mesh, or an exact shape".into(),
+            remedy: remedy.into(),
         })
+    }
+
+    /// The most that smooth normals of a surface turn away from their facets.
+    fn tilt_deg(&self, surface: SurfaceId) -> f64 {
+        match &self.scene.geometry.surfaces()[surface.0 as usize].shape {
+            Shape::Mesh(mesh) => mesh.largest_tilt().to_degrees(),
+            _ => 0.0,
+        }
     }
 
     /// Receivers that stay dark although light reaches their other side.
@@ -256,10 +286,4 @@ pub fn percent(share: f64) -> String {
         p if p >= 0.01 => format!("{p:.2} %"),
         p => format!("{p:.0e} %"),
     }
-}
-
-/// Four significant digits.
-fn four_digits(x: f64) -> String {
-    let digits = if x > 0.0 { (3 - x.log10().floor() as i32).clamp(0, 12) } else { 0 };
-    format!("{x:.*}", digits as usize)
 }

@@ -34,6 +34,16 @@ pub struct Defect {
 /// The defect of one quantity, all channels together, for light from the front or from the back first. `None` where the table
 /// has no lobe for it, or (transmission) none for the way back.
 pub fn reciprocity(table: &ScatterTable, quantity: Quantity, from_front: bool) -> Option<Defect> {
+    weighted(table, quantity, from_front, |_| 1.0)
+}
+
+/// The same of values that are multiplied by a weight of the scattered direction, in the frame of the side its light comes from.
+fn weighted(
+    table: &ScatterTable,
+    quantity: Quantity,
+    from_front: bool,
+    weight: impl Fn(DVec3) -> f64,
+) -> Option<Defect> {
     let there = table.lobe(quantity, from_front)?;
     let through = quantity == Quantity::Transmission;
     let back = if through { table.lobe(quantity, !from_front)? } else { there };
@@ -48,8 +58,8 @@ pub fn reciprocity(table: &ScatterTable, quantity: Quantity, from_front: bool) -
         let wo = on_hemisphere(u[2], u[3]);
         let wo = if through { DVec3::new(wo.x, wo.y, -wo.z) } else { wo };
         for channel in 0..channels {
-            let forth = value(there, channel, wi, wo);
-            let home = value(back, channel, other(wo), other(wi));
+            let forth = weight(wo) * value(there, channel, wi, wo);
+            let home = weight(wi) * value(back, channel, other(wo), other(wi));
             let larger = forth.max(home);
             if larger > 0.0 {
                 defect.pairs += 1;
@@ -76,6 +86,29 @@ pub fn all(table: &ScatterTable) -> Vec<(Quantity, bool, Defect)> {
     let ways = [(Quantity::Reflection, true), back, (Quantity::Transmission, true)];
     let same = both(table.lobe(Quantity::Reflection, true));
     ways.into_iter().filter(|way| !(same && *way == back)).filter_map(one).collect()
+}
+
+/// A defect of a table that holds f times the cosine of the scattered direction where f is asked for: as it stands, and with its
+/// values divided by that cosine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WithCosine {
+    /// Root mean square, as [`Defect::rms`].
+    pub as_it_stands: f64,
+    /// The same of the divided values.
+    pub divided: f64,
+}
+
+/// Whether a table breaks reciprocity, and keeps it when its values are divided by the cosine.
+pub fn with_cosine(table: &ScatterTable) -> Option<WithCosine> {
+    /// Tables of formulas keep it within a few per cent, measured ones within tens.
+    const BROKEN: f64 = 0.2;
+    /// What is left of the defect where the cosine is what is wrong.
+    const LEFT: f64 = 1.0 / 3.0;
+    all(table).into_iter().find_map(|(quantity, front, defect)| {
+        let divided = weighted(table, quantity, front, |w| 1.0 / w.z.abs())?.rms;
+        let is_cosine = defect.rms > BROKEN && divided < LEFT * defect.rms;
+        is_cosine.then_some(WithCosine { as_it_stands: defect.rms, divided })
+    })
 }
 
 /// Point i of the additive recurrence in four dimensions: steps are powers of the root of x^5 = x + 1.

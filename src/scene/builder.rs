@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use crate::emitter::{Colour, Emitter, Emitters};
+use crate::error::warning::Warning;
 use crate::error::{Diagnostic, Kind, Place};
 use crate::geometry::{Bond, Geometry, Mesh, Shape, Surface};
 use crate::surface::Material;
@@ -34,6 +35,7 @@ pub struct SceneBuilder {
     camera_medium: Option<Medium>,
     ambient: Option<Medium>,
     compared_reflections: Option<u32>,
+    told: Vec<Warning>,
     place: Option<Place>,
 }
 
@@ -122,6 +124,12 @@ impl SceneBuilder {
         self
     }
 
+    /// A warning of every run of the scene, beside what is found when it is built.
+    pub(crate) fn tell(&mut self, warning: Warning) -> &mut Self {
+        self.told.push(warning);
+        self
+    }
+
     /// The scene of these parts.
     ///
     /// # Errors
@@ -207,6 +215,7 @@ impl SceneBuilder {
                     emitter_colours,
                 };
                 (scene.clashes, scene.found) = found::look(&scene, &options);
+                scene.found.extend(self.told);
                 Ok(scene)
             }
             Ok(_) => Err(errors),

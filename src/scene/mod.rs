@@ -18,6 +18,8 @@ pub mod receiver;
 pub mod requires;
 pub mod sheets;
 mod sizes;
+pub mod steps;
+mod units;
 
 use std::sync::OnceLock;
 

@@ -13,8 +13,9 @@ pub const LONGEST_DIMENSION: usize = 64;
 pub struct Exceptions {
     /// Candidate hits that were the crossing just made, seen again through rounding.
     pub skipped_crossings: u64,
-    /// Directions mirrored back to their side of the facet, and arrivals behind the smooth normal (METHOD 1).
-    pub corrected_directions: u64,
+    /// Directions mirrored back to their side of the facet, and arrivals behind the smooth normal (METHOD 1), by surface.
+    #[serde(serialize_with = "in_all")]
+    pub corrected_directions: BTreeMap<SurfaceId, u64>,
     /// Photons that a scattering table sent below the horizon, absorbed there (METHOD 4).
     pub below_horizon: u64,
     /// Arrivals at transparent surfaces in another medium than the scene says is there.
@@ -23,6 +24,18 @@ pub struct Exceptions {
     /// Photons that met no further surface while they were inside these bodies.
     #[serde(skip)]
     pub lost: BTreeMap<SurfaceId, u64>,
+}
+
+/// Counts of surfaces, as the count of all of them.
+fn in_all<S: serde::Serializer>(counts: &BTreeMap<SurfaceId, u64>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_u64(counts.values().sum())
+}
+
+impl Exceptions {
+    /// Corrected directions on all surfaces.
+    pub fn corrected(&self) -> u64 {
+        self.corrected_directions.values().sum()
+    }
 }
 
 /// Adds counts by what they are of.
@@ -97,8 +110,8 @@ impl Census {
             *a += b;
         }
         self.exceptions.skipped_crossings += other.exceptions.skipped_crossings;
-        self.exceptions.corrected_directions += other.exceptions.corrected_directions;
         self.exceptions.below_horizon += other.exceptions.below_horizon;
+        add(&mut self.exceptions.corrected_directions, &other.exceptions.corrected_directions);
         add(&mut self.exceptions.contradicted, &other.exceptions.contradicted);
         add(&mut self.exceptions.lost, &other.exceptions.lost);
         add(&mut self.missed, &other.missed);

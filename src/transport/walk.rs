@@ -118,7 +118,9 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
                 return End::Absorbed(hit.surface);
             }
             Event::Leaves { direction: onward, through, corrected } => {
-                exceptions.corrected_directions += u64::from(corrected);
+                if corrected {
+                    *exceptions.corrected_directions.entry(hit.surface).or_default() += 1;
+                }
                 went_through = through;
                 let side = if hit.front == through { Side::Back } else { Side::Front };
                 scene.media.leave(&mut whereabouts, &hit, side);

@@ -13,6 +13,8 @@ mod make_ies;
 
 mod broken_scene;
 mod damage;
+mod mistakes;
+mod mistakes_warned;
 mod photometry_damaged;
 mod photometry_own;
 mod photometry_real;

@@ -11,7 +11,7 @@ const DECLARED_TOLERANCE: f64 = 0.01;
 
 /// The warnings about one table.
 pub(crate) fn remarks(table: &ScatterTable) -> Vec<Diagnostic> {
-    let of_lobe = |lobe| [below_horizon(lobe), cut_off(lobe), declared(lobe)];
+    let of_lobe = |lobe| [below_horizon(lobe), cut_off(lobe), radians(lobe), declared(lobe)];
     table.lobes.iter().flat_map(of_lobe).flatten().collect()
 }
 
@@ -72,6 +72,22 @@ fn cut_off(lobe: &Lobe) -> Option<Diagnostic> {
         Diagnostic::new(Kind::Range, found, "angles up to the horizon")
             .hint("nothing is scattered beyond the last polar angle")
     })
+}
+
+/// Angles that end where a right angle or half a turn in radians is: 1.3 to 1.58 are 75 to 90 degrees.
+fn radians(lobe: &Lobe) -> Option<Diagnostic> {
+    /// Fewer angles than these may well lie all near the normal.
+    const FEWEST: usize = 4;
+    let ends_so = |angles: &&(&[f64], &str)| {
+        let last = angles.0.last().copied().unwrap_or_default();
+        angles.0.len() >= FEWEST && ((1.3..1.58).contains(&last) || (3.1..3.15).contains(&last))
+    };
+    let lists = [(&lobe.theta_i_deg[..], "theta_i"), (&lobe.polar_deg[..], "polar angles")];
+    let (angles, what) = lists.iter().find(ends_so)?;
+    let last = angles.last()?;
+    let found = format!("{what} of the {} that end at {last} degrees", noun(lobe));
+    let d = Diagnostic::new(Kind::Range, found, "angles in degrees");
+    Some(d.hint(format!("radians? {last} radians are {:.1} degrees", last.to_degrees())))
 }
 
 /// The declared total scatter that differs most from the table's integral.

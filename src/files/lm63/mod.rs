@@ -14,6 +14,7 @@
 //! ```
 
 mod body;
+mod commas;
 mod decode;
 mod header;
 mod tokens;
@@ -25,7 +26,7 @@ use crate::files::bytes::{check_length, read_capped};
 use crate::files::excerpt::quoted;
 use crate::photometry::{Photometry, Tilt, TiltTable, flux};
 use body::Reader;
-use header::{has_tilt_line, read_header};
+use header::{Header, has_tilt_line, read_header};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -71,13 +72,23 @@ pub(crate) fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result
 
 fn parse_text(text: &str, tilt_file: TiltFile<'_>) -> Result<Photometry> {
     let header = read_header(text)?;
+    let (body, has_tilt_table) = (header.body, header.tilt.0.eq_ignore_ascii_case("INCLUDE"));
+    let read = parse_body(text, header, tilt_file);
+    // Where all is as the counts say, commas are what they should be.
+    let is_whole = matches!(read, Ok((_, 0)));
+    let refusal = if is_whole { None } else { commas::refusal(text, body, has_tilt_table) };
+    refusal.map_or(read, Err).map(|(photometry, _)| photometry)
+}
+
+/// Also the count of numbers left over.
+fn parse_body(text: &str, header: Header<'_>, tilt_file: TiltFile<'_>) -> Result<(Photometry, u64)> {
     let mut reader = Reader { warnings: header.warnings, ..Reader::new(text, header.body) };
     let tilt = read_tilt(header.tilt, &mut reader, tilt_file)?;
     let luminaire = reader.luminaire(header.revision)?;
-    warn_about_rest(&mut reader);
+    let surplus = warn_about_rest(&mut reader);
     let mut photometry = Photometry { labels: header.labels, tilt, warnings: reader.warnings, ..luminaire };
     compare_declared(&mut photometry);
-    Ok(photometry)
+    Ok((photometry, surplus))
 }
 
 /// What TILT= says; `value` begins at byte `offset`.
@@ -122,8 +133,9 @@ fn read_tilt_file(name: &str, tilt_file: TiltFile<'_>) -> Result<TiltTable> {
     Reader::new(&decode::decode(&bytes), 0).tilt_table()
 }
 
-/// What stands behind the last candela value: another luminaire, surplus numbers, other text.
-fn warn_about_rest(reader: &mut Reader) {
+/// What stands behind the last candela value: another luminaire, surplus numbers, other text; the count of
+/// surplus numbers.
+fn warn_about_rest(reader: &mut Reader) -> u64 {
     let (offset, rest, behind_mark) = reader.tokens.rest();
     let blank = |text: &str| text.chars().all(|c| c.is_whitespace() || c == '\0' || c == '\u{1a}');
     let required = "nothing after the last candela value";
@@ -139,9 +151,11 @@ fn warn_about_rest(reader: &mut Reader) {
             n => format!("{n} surplus numbers"),
         };
         reader.warn(offset, Kind::Syntax, &found, required, "it is ignored");
+        return surplus;
     } else if !blank(behind_mark) {
         reader.warn(offset, Kind::Syntax, "text behind the end-of-file mark", required, "it is ignored");
     }
+    0
 }
 
 /// The maker's own flux against ours: an independent check that comes with the file.

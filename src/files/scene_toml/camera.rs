@@ -29,7 +29,7 @@ const OF_THE_MAP: [&str; 4] = ["radius", "nearest", "progressive_radius", "kerne
 
 pub(super) fn read(mut table: Table<'_, '_>) -> Option<Camera> {
     let view = read_view(&mut table);
-    let fov_deg = table.needed_number("fov_deg", &FOV);
+    let fov_deg = table.needed("fov_deg", FOV.words, |t, key| t.angle(key, &FOV));
     let pixels = table.needed("pixels", PIXELS_REQUIRED, |t, key| t.cells(key, MOST_PIXELS, PIXELS_REQUIRED));
     let needed = view.zip(fov_deg).zip(pixels);
     // Where one of them is missing, the rest is read all the same, so that all its errors are told.

@@ -4,6 +4,7 @@ use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 use crate::error::{Diagnostic, Kind, Place};
+use crate::files::excerpt::visible;
 
 /// A value and where it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +55,7 @@ impl<'t> Document<'t> {
 
     /// The text there, cut to one line of at most 40 characters.
     pub fn excerpt(&self, span: Range<usize>) -> String {
-        cut(self.text.get(span).unwrap_or_default())
+        visible(&cut(self.text.get(span).unwrap_or_default()))
     }
 
     /// Keep the mention of a file.

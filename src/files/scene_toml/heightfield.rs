@@ -10,6 +10,7 @@ use crate::geometry::{
     ANGLE, CELLS_REQUIRED, COORDINATE, Facing, Formula, HEIGHT, Heightfield, LENGTH, MOST_CELLS,
     MOST_OCTAVES, Noise, Octave, PEAK, RELATIVE, Shape, Wave,
 };
+use crate::scene::steps::Steps;
 
 /// Most cells of all heightfields of a scene: 2^24, about eight gigabytes of triangles and search structure.
 const MOST_CELLS_TOGETHER: u64 = 1 << 24;
@@ -44,8 +45,9 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
             let [nx, ny] = cells.unwrap_or([0; 2]).map(u64::from);
             count(table, name, nx * ny, all);
             Some(Box::new(move |loader: &mut Loader| {
-                let image = height_image::parse(&loader.bytes(&file)?, heights)
-                    .map_err(|e| e.in_file(loader.path(&file)))?;
+                let bytes = loader.bytes(&file)?;
+                let image =
+                    height_image::parse(&bytes, heights).map_err(|e| e.in_file(loader.path(&file)))?;
                 let [columns, rows] = image.size();
                 let cells = cells.unwrap_or([columns as u32 - 1, rows as u32 - 1]);
                 // A picture of one grey packs a thousandfold: a small file must not ask for gigabytes of triangles.
@@ -55,6 +57,12 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
                         .hint("give cells = [along x, along y]: heights between pixels are interpolated"));
                 }
                 let field = Heightfield::new(origin, size, cells, Formula::Image(image))?;
+                let between =
+                    |k: usize, pixels: usize| size[k] / f64::from(cells[k]).min(pixels as f64 - 1.0);
+                loader.steps = height_image::has_8_bits(&bytes).then(|| Steps {
+                    height_m: (heights[1] - heights[0]).abs() / 255.0,
+                    distance_m: between(0, columns).min(between(1, rows)),
+                });
                 Ok(field.facing(facing).smooth(smooth).mesh()?.into())
             }))
         }
@@ -95,8 +103,8 @@ fn read_waves(table: &mut Table<'_, '_>) -> Option<Vec<Wave>> {
 fn read_wave(mut table: Table<'_, '_>) -> Option<Wave> {
     let amplitude_m = table.needed_number("amplitude", &HEIGHT);
     let wavelength_m = table.needed_number("wavelength", &LENGTH);
-    let direction_deg = table.number("direction_deg", &ANGLE).unwrap_or(0.0);
-    let phase_deg = table.number("phase_deg", &ANGLE).unwrap_or(0.0);
+    let direction_deg = table.angle("direction_deg", &ANGLE).unwrap_or(0.0);
+    let phase_deg = table.angle("phase_deg", &ANGLE).unwrap_or(0.0);
     table.finish();
     Some(Wave { amplitude_m: amplitude_m?, wavelength_m: wavelength_m?, direction_deg, phase_deg })
 }

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use super::syntax::BACKSLASH;
 use super::table::Placed;
-use crate::error::{Diagnostic, Place, Result};
+use crate::error::{Diagnostic, Result};
 use crate::files::bytes::Files;
 use crate::files::lm63;
 use crate::photometry::Photometry;
+use crate::scene::steps::Steps;
 
 /// Makes a part of a scene; whatever it says of itself has been checked when its table was read.
 pub(crate) type Make<T> = Box<dyn FnOnce(&mut Loader) -> Result<T>>;
@@ -24,12 +26,14 @@ pub(crate) struct Loader {
     pub name: String,
     pub files: Files,
     pub warnings: Vec<Diagnostic>,
+    /// The steps of the heightfield that was made last, where its image has few.
+    pub steps: Option<Steps>,
 }
 
 impl Loader {
     /// The bytes of a file; errors point to where it is named.
     pub fn bytes(&mut self, file: &Placed<String>) -> Result<Rc<[u8]>> {
-        self.files.load(&file.value).map_err(|e| self.at_name(file.place, e))
+        self.files.load(&file.value).map_err(|e| self.at_name(file, e))
     }
 
     /// What messages call a file.
@@ -51,13 +55,15 @@ impl Loader {
 
     /// The error that a file cannot be opened, if it cannot.
     pub fn missing(&self, file: &Placed<String>) -> Option<Diagnostic> {
-        self.files.probe(&file.value).err().map(|e| self.at_name(file.place, e))
+        self.files.probe(&file.value).err().map(|e| self.at_name(file, e))
     }
 
-    fn at_name(&self, place: Place, error: Diagnostic) -> Diagnostic {
-        let pointed = error.placed(Some(place)).in_file(&self.name);
+    fn at_name(&self, file: &Placed<String>, error: Diagnostic) -> Diagnostic {
+        let pointed = error.placed(Some(file.place)).in_file(&self.name);
         match pointed.advice() {
             Some(_) => pointed,
+            // No file is called so: an escape has come out of a path of Windows.
+            None if file.value.contains(char::is_control) => pointed.hint(format!("write {BACKSLASH}")),
             None => pointed.hint("paths are relative to the folder of the scene file"),
         }
     }

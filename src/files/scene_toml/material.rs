@@ -105,7 +105,7 @@ fn read_tabulated(table: &mut Table<'_, '_>, aside: &mut Aside) -> Option<Make<M
     table.call("a tabulated material");
     let file = table.path("file");
     let sides = table.word("side", &SIDES).unwrap_or_default();
-    let rotation_deg = table.number("rotation_deg", &ANGLE).unwrap_or(0.0);
+    let rotation_deg = table.angle("rotation_deg", &ANGLE).unwrap_or(0.0);
     let along = table.vector("reference", &DIRECTION);
     if along.is_some_and(|v| unit(v).is_none()) {
         table.error("reference", Kind::Range, DIRECTION_REQUIRED);

@@ -29,6 +29,7 @@ use crate::error::{Diagnostic, Kind, Place};
 use crate::files::bytes::{Base, Files, read_capped};
 use crate::math::digest::sha256_hex;
 use crate::scene::{Identity, Scene, SceneBuilder};
+use crate::surface::Kind as MaterialKind;
 use document::Document;
 use loader::Loader;
 use parts::Parts;
@@ -111,7 +112,7 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<SceneFile, Vec<Diagno
     };
     let parts = Parts::read(Table::new(&document, root.get_ref(), "a scene", Place { line: 1, column: 1 }));
     let warnings = document.finish()?;
-    let loader = Loader { name: name.to_owned(), files: Files::new(base), warnings: Vec::new() };
+    let loader = Loader { name: name.to_owned(), files: Files::new(base), warnings: Vec::new(), steps: None };
     Ok(SceneFile { run: parts.run, warnings, text: text.to_owned(), loader, parts })
 }
 
@@ -158,6 +159,10 @@ impl SceneFile {
                 // A material in error is reported already.
                 let Some((material, reference)) = &materials[part.material] else { return Ok(()) };
                 let material = material::laid_on(material, *reference, &shape)?;
+                let steps = loader.steps.take().filter(|_| material.kind() == MaterialKind::Specular);
+                if let Some(warning) = steps.and_then(|steps| steps.warning(&part.name)) {
+                    scene.tell(warning);
+                }
                 scene.at(place).surface_with(part.name, shape, material, part.options);
                 Ok(())
             });

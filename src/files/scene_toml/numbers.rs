@@ -30,8 +30,41 @@ impl<'t> Table<'t, '_> {
         match number_of(value.get_ref()) {
             Some(number) if interval.contains(number) => Some(number),
             Some(_) => self.wrong(label, value, Kind::Range, interval.words),
-            None => self.wrong(label, value, Kind::Syntax, interval.words),
+            None => self.no_number(label, value, interval.words),
         }
+    }
+
+    /// Keep an error about a value that is no number; of one that is only in quotes, with advice.
+    fn no_number<T>(&self, label: &str, value: Value<'t>, required: &str) -> Option<T> {
+        let text = value.get_ref().as_str().map(|text| text.trim().replace(',', "."));
+        match text.filter(|text| text.parse::<f64>().is_ok_and(f64::is_finite)) {
+            Some(number) => {
+                self.advised(label, value, required, &format!("write it without quotes: {number}"))
+            }
+            None => self.wrong(label, value, Kind::Syntax, required),
+        }
+    }
+
+    /// An angle in degrees; one that looks like radians is told.
+    pub fn angle(&mut self, key: &'static str, interval: &Interval) -> Option<f64> {
+        let angle = self.number(key, interval)?;
+        self.warn_of_radians(key, &[angle]);
+        Some(angle)
+    }
+
+    /// The same of three angles.
+    pub fn angles(&mut self, key: &'static str, interval: &Interval) -> Option<DVec3> {
+        let angles = self.vector(key, interval)?;
+        self.warn_of_radians(key, &angles.to_array());
+        Some(angles)
+    }
+
+    fn warn_of_radians(&self, key: &str, angles: &[f64]) {
+        let degrees = |&angle: &f64| radians_in_degrees(angle).map(|degrees| (angle, degrees));
+        let Some((angle, degrees)) = angles.iter().find_map(degrees) else { return };
+        let found = format!("{key} with {angle}, which looks like radians");
+        let required = format!("degrees: {angle} radians are {degrees} degrees");
+        self.document().warn_at(self.place_of(key).unwrap_or(self.place()), Kind::Range, found, required);
     }
 
     /// `N` numbers in this interval, in a list.
@@ -75,7 +108,7 @@ impl<'t> Table<'t, '_> {
         let value = self.take(key)?;
         if number_of(value.get_ref()).is_none() {
             let required = format!("{}, or a list of 3 such numbers", interval.words);
-            return self.wrong(key, value, Kind::Syntax, &required);
+            return self.no_number(key, value, &required);
         }
         self.number_in(key, value, interval).map(DVec3::splat)
     }
@@ -88,7 +121,7 @@ impl<'t> Table<'t, '_> {
 
     fn integer_in(&self, label: &str, value: Value<'t>, low: u64, high: u64, words: &str) -> Option<u64> {
         let Some(integer) = value.get_ref().as_integer() else {
-            return self.wrong(label, value, Kind::Syntax, words);
+            return self.no_number(label, value, words);
         };
         match u64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(number) if (low..=high).contains(&number) => Some(number),
@@ -123,6 +156,17 @@ impl<'t> Table<'t, '_> {
         };
         parse_count(&text).map_err(|e| self.error(key, e.kind(), e.required())).ok()
     }
+}
+
+/// Whole degrees that an angle is in radians, where it is a multiple of 30 or 45 degrees in radians but for its last digits. Such
+/// numbers are rare among angles in degrees.
+fn radians_in_degrees(angle: f64) -> Option<f64> {
+    /// Of 1.57 for pi / 2, 3.14 for pi, 0.785 for pi / 4.
+    const ROUNDED: f64 = 6e-4;
+    let degrees = angle.to_degrees();
+    let of = |step: f64| step * (degrees / step).round();
+    let is_near = |round: &f64| *round != 0.0 && (degrees - round).abs() <= ROUNDED * round.abs();
+    [of(30.0), of(45.0)].into_iter().filter(|round| round.abs() <= 360.0).find(is_near)
 }
 
 /// A TOML number as f64; integers are welcome where a number is.

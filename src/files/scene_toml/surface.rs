@@ -82,7 +82,7 @@ fn moved(shape: Shape, by: &Transform) -> Result<Shape, Invalid> {
 
 fn read_transform(table: &mut Table<'_, '_>) -> Option<Transform> {
     let scale = table.number_or_vector("scale", &SCALE).unwrap_or(DVec3::ONE);
-    let rotate_deg = table.vector("rotate_deg", &ANGLE).unwrap_or(DVec3::ZERO);
+    let rotate_deg = table.angles("rotate_deg", &ANGLE).unwrap_or(DVec3::ZERO);
     let translate = table.vector("translate", &COORDINATE).unwrap_or(DVec3::ZERO);
     table.accept(Transform::new(scale, rotate_deg, translate))
 }

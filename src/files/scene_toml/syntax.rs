@@ -5,6 +5,7 @@ use toml::de::{DeTable, Error};
 
 use super::document::{Document, cut};
 use crate::error::Kind;
+use crate::files::excerpt::visible;
 
 /// Most syntax errors that are told: after the first few the rest tend to be their echoes.
 const MOST_SYNTAX_ERRORS: usize = 20;
@@ -59,6 +60,15 @@ fn rule_of(text: &str, number: usize) -> &'static str {
     if value.starts_with('=') {
         return "one `=` between a key and its value";
     }
+    if value.starts_with('"') && value.contains('\\') {
+        return BACKSLASH;
+    }
+    if value.strip_suffix(',').is_some_and(|value| is_whole(value.trim_end())) {
+        return "no comma after a value: every key stands in a line of its own";
+    }
+    if is_number(value) && value.contains(',') {
+        return "a decimal point, as in 1.5, instead of the comma";
+    }
     let unsigned = value.trim_start_matches(['+', '-']);
     let (signs, digits) = (value.len() - unsigned.len(), unsigned.as_bytes());
     match digits {
@@ -72,13 +82,29 @@ fn rule_of(text: &str, number: usize) -> &'static str {
     }
 }
 
+/// What to write instead of a backslash that is part of a path.
+pub(super) const BACKSLASH: &str = "a path with / or in single quotes ('C:\\ies\\spot.ies'): in double quotes a backslash begins an escape such as \\t";
+
+/// Whether it is a number, but for a decimal comma; a comment may follow.
+fn is_number(value: &str) -> bool {
+    let value = value.split('#').next().unwrap_or_default().trim_end();
+    value.matches(',').count() <= 1 && value.replace([',', '_'], ".").parse::<f64>().is_ok()
+}
+
+/// Whether a value is complete.
+fn is_whole(value: &str) -> bool {
+    let between = |open, close| value.len() > 1 && value.starts_with(open) && value.ends_with(close);
+    let pairs = [('"', '"'), ('\'', '\''), ('[', ']'), ('{', '}')];
+    is_number(value) || ["true", "false"].contains(&value) || pairs.iter().any(|(a, b)| between(*a, *b))
+}
+
 fn not_toml(text: &str, number: usize, excerpt: &str) -> String {
-    let shown = cut(text.lines().nth(number - 1).unwrap_or_default().trim());
+    let shown = visible(&cut(text.lines().nth(number - 1).unwrap_or_default().trim()));
     match excerpt {
         "" if shown.is_empty() => "the end of the text, which is too early".into(),
-        "" => format!("`{}`, which is not complete", shown.escape_debug()),
-        _ if excerpt == shown => format!("`{}`, which is not TOML", shown.escape_debug()),
-        _ => format!("`{}` in `{}`, which is not TOML there", excerpt.escape_debug(), shown.escape_debug()),
+        "" => format!("`{shown}`, which is not complete"),
+        _ if excerpt == shown => format!("`{shown}`, which is not TOML"),
+        _ => format!("`{excerpt}` in `{shown}`, which is not TOML there"),
     }
 }
 

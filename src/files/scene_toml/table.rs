@@ -86,6 +86,13 @@ impl<'t, 'd> Table<'t, 'd> {
         None
     }
 
+    /// Keep an error about a value of another kind, with what to do.
+    pub(super) fn advised<T>(&self, label: &str, value: Value<'t>, required: &str, hint: &str) -> Option<T> {
+        let error = || Diagnostic::new(Kind::Syntax, self.shown(label, value), required);
+        self.document.error(|| error().placed(Some(self.at(value))).hint(hint));
+        None
+    }
+
     fn shown(&self, label: &str, value: Value<'t>) -> String {
         format!("{label} = {}", self.document.excerpt(value.span()))
     }

@@ -8,6 +8,9 @@ use crate::surface::tabulated::layer::Layer;
 /// Albedos up to here are 1 as far as values in f32 can tell.
 pub(crate) const ONE: f64 = 1.0 + 4.0 * f32::EPSILON as f64;
 
+/// An albedo beyond this is no error of measurement: the values are of another unit.
+const NO_MEASUREMENT: f64 = 2.0;
+
 /// What an albedo is scaled to: 1, and enough beside it that mixtures of such slices don't round to less,
 /// which would be an event that has to be decided.
 const TO_ONE: f64 = 1.0 + 4.0 * f64::EPSILON;
@@ -42,8 +45,13 @@ pub(super) fn check(layers: &mut [Layer], faces: &[Face; 2], energy: Energy) -> 
             worst.phi.to_degrees(),
         );
         if energy == Energy::Refuse {
-            return Err(Diagnostic::new(Kind::Range, found, "albedos of at most 1")
-                .hint("energy = \"scale\" scales these incidences to 1"));
+            let scale = "energy = \"scale\" scales these incidences to 1, where nothing is absorbed";
+            let hint = if worst.albedo > NO_MEASUREMENT {
+                format!("are the values in per cent, or multiplied by pi? f is in 1/sr; else {scale}")
+            } else {
+                scale.to_owned()
+            };
+            return Err(Diagnostic::new(Kind::Range, found, "albedos of at most 1").hint(hint));
         }
         let required = "albedos of at most 1; those above are scaled to 1";
         warnings.push(Diagnostic::new(Kind::Range, found, required));

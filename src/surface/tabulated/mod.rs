@@ -33,6 +33,7 @@ use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::scattering::ScatterTable;
+use crate::scattering::reciprocity::{self, WithCosine};
 use crate::surface::Reference;
 
 use arrival::Arrival;
@@ -51,6 +52,8 @@ pub struct Tabulated {
     reference: Reference,
     /// (sin, cos) of the rotation.
     turn: (f64, f64),
+    /// What speaks for values that were multiplied by the cosine.
+    with_cosine: Option<WithCosine>,
 }
 
 impl Tabulated {
@@ -68,8 +71,14 @@ impl Tabulated {
         let faces = faces(table, &layers, options);
         let warnings = energy::check(&mut layers, &faces, options.energy)?;
         let turn = libm::sincos(options.rotation_deg.to_radians());
-        let this = Self { layers: layers.into(), faces, reference: Reference::default(), turn };
+        let (reference, with_cosine) = (Reference::default(), reciprocity::with_cosine(table));
+        let this = Self { layers: layers.into(), faces, reference, turn, with_cosine };
         Ok((this.with_reference(options.reference)?, warnings))
+    }
+
+    /// Where the table breaks reciprocity as one that holds f times the cosine does.
+    pub fn with_cosine(&self) -> Option<WithCosine> {
+        self.with_cosine
     }
 
     /// The same table on a surface with another reference direction.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::emitter::{Emitter, Isotropic};
 use crate::geometry::mesh::{MeshParts, Smoothing};
-use crate::geometry::{Mesh, Rectangle, Shape, box_mesh};
+use crate::geometry::{Mesh, Rectangle, Shape, SurfaceId, box_mesh};
 use crate::sample::coordinates::Coordinates;
 use crate::scattering::{Frame, LobeData, LobeSide, Quantity, ScatterTable};
 use crate::scene::SceneBuilder;
@@ -127,7 +127,8 @@ fn exceptions_of_smooth_normals_are_counted() {
         let emission = Emission { origin: -0.5 * direction, direction, weight: 1.0 };
         let (end, seen, exceptions) = walked(&leaning(normal), emission, Grey, &mut Script::default());
         assert_eq!((end, seen.len()), (End::Escaped, 1));
-        let expected = Exceptions { corrected_directions: corrected, ..Exceptions::default() };
+        let by_surface = (corrected > 0).then_some((SurfaceId(0), corrected)).into_iter().collect();
+        let expected = Exceptions { corrected_directions: by_surface, ..Exceptions::default() };
         assert_eq!(exceptions, expected, "normal {normal:?}, direction {direction}");
     }
 }
