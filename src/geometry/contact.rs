@@ -61,6 +61,8 @@ pub(super) struct Contacts {
     pairs: Vec<Contact>,
     /// Pairs of transparent closed surfaces that cut each other; twice the same for one that cuts itself.
     cuts: Vec<[SurfaceId; 2]>,
+    /// Transparent closed surfaces, and opaque ones that cut them.
+    solid_cuts: Vec<[SurfaceId; 2]>,
     /// Faces that all but touch.
     near: Vec<Near>,
 }
@@ -89,6 +91,17 @@ impl Contacts {
                     let are_neighbours = s == t && a.iter().any(|v| b.contains(v));
                     if is_body(s) && is_body(t) && !are_neighbours && cut(&a, &b) {
                         found.cuts.push([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
+                    }
+                    for [body, solid] in [[s, t], [t, s]] {
+                        let pair = [SurfaceId(body), SurfaceId(solid)];
+                        // One cut is enough.
+                        if is_body(body)
+                            && !bonds[solid as usize].is_clear
+                            && !found.solid_cuts.contains(&pair)
+                            && cut(&a, &b)
+                        {
+                            found.solid_cuts.push(pair);
+                        }
                     }
                     let facing = facing(&a, &b);
                     if facing.is_none() && s != t {
@@ -126,6 +139,11 @@ impl Contacts {
     /// itself.
     pub fn cuts(&self) -> &[[SurfaceId; 2]] {
         &self.cuts
+    }
+
+    /// Transparent closed surfaces, and opaque ones that cut them.
+    pub fn solid_cuts(&self) -> &[[SurfaceId; 2]] {
+        &self.solid_cuts
     }
 
     /// Pairs of surfaces that all but touch.

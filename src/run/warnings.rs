@@ -4,19 +4,23 @@
 use crate::error::warning::{Severity, Warning};
 use crate::geometry::SurfaceId;
 use crate::scene::Scene;
+use crate::scene::inside::LAMP_INSIDE;
 use crate::scene::receiver::ReceiverSide;
 use crate::scene::sheets::{CLASH, Clash};
 use crate::transport::mixed::{self, Witness};
 
 use super::Outcome;
+use super::dark::{self, four_digits};
 
 /// The code of light that total reflection keeps.
 pub const TRAPPED: &str = "trapped";
+/// The code of a lamp whose light meets nothing.
+const AIMED_AWAY: &str = "aimed-away";
 
-/// Of a photon's flux: killed walks that take away more than this are more than a receiver's error can hide.
-const KILLED_IN_DOUBT: f64 = 1e-6;
+/// Of all photons: more than this is missing, and it is more than a receiver's error can hide.
+const MISSING_IN_DOUBT: f64 = 1e-6;
 /// And more than this is a wrong number.
-const KILLED_WRONG: f64 = 1e-3;
+const MISSING_WRONG: f64 = 1e-3;
 /// Smooth normals that turn more than this share of photons back change what a mesh does.
 const CORRECTED: f64 = 0.01;
 /// Of an emitter's photons: meeting nothing, this many are no accident.
@@ -45,8 +49,13 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     all.extend(run.trapped());
     all.extend(run.killed());
     all.extend(run.corrected());
-    all.extend(run.turned_away());
+    // Of a lamp in a box the receiver on its outside gets nothing, whatever side it counts on.
+    let is_shut = |w: &Warning| all.iter().any(|a| a.code == LAMP_INSIDE && a.surfaces == w.surfaces);
+    let turned_away: Vec<_> = run.turned_away().filter(|w| !is_shut(w)).collect();
+    all.extend(turned_away);
     all.extend(run.aimed_away());
+    let is_told = all.iter().any(|w| [LAMP_INSIDE, AIMED_AWAY].contains(&w.code));
+    all.extend(dark::warnings(scene, outcome, is_told));
     all.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     all
 }
@@ -83,7 +92,7 @@ impl Run<'_> {
                 code: "contradicted-medium",
                 message: format!(
                     "light reached surface \"{name}\" in another medium than the scene says is there, {} times a photon",
-                    percent(share)
+                    times(share)
                 ),
                 surfaces: vec![name],
                 share: Some(share),
@@ -123,7 +132,7 @@ impl Run<'_> {
         self.outcome.census.exceptions.lost.iter().map(|(&surface, &count)| {
             let (name, share) = (self.name(surface), count as f64 / self.photons);
             Warning {
-                severity: Severity::Untrusted,
+                severity: of_missing(share),
                 code: "lost-in-body",
                 message: format!("{} of all photons left the scene inside \"{name}\"", percent(share)),
                 surfaces: vec![name],
@@ -156,14 +165,8 @@ impl Run<'_> {
 
     fn killed(&self) -> Option<Warning> {
         let share = self.outcome.ledger.killed as f64 / self.photons;
-        let severity = match share {
-            0.0 => return None,
-            s if s > KILLED_WRONG => Severity::Untrusted,
-            s if s > KILLED_IN_DOUBT => Severity::Doubtful,
-            _ => Severity::Note,
-        };
-        Some(Warning {
-            severity,
+        (share > 0.0).then(|| Warning {
+            severity: of_missing(share),
             code: "killed",
             message: format!(
                 "{} of all photons were ended after {} events, before they were absorbed or had left; receivers that \
@@ -185,7 +188,7 @@ impl Run<'_> {
             code: "corrected-directions",
             message: format!(
                 "smooth normals sent light to the wrong side of its facet, {} times a photon, and it was mirrored back",
-                percent(share)
+                times(share)
             ),
             surfaces: Vec::new(),
             share: Some(share),
@@ -235,7 +238,7 @@ impl Run<'_> {
             }
             Some(Warning {
                 severity: Severity::Doubtful,
-                code: "aimed-away",
+                code: AIMED_AWAY,
                 message: format!(
                     "{} of the light of emitter \"{}\" leaves the scene without meeting any surface",
                     percent(share),
@@ -258,8 +261,21 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Four significant digits.
-fn four_digits(x: f64) -> String {
-    let digits = if x > 0.0 { (3 - x.log10().floor() as i32).clamp(0, 12) } else { 0 };
-    format!("{x:.*}", digits as usize)
+/// How much it matters that this share of all photons is missing. (A ray that passes through an edge, to the last bit, may be
+/// lost: that is no crack.)
+fn of_missing(share: f64) -> Severity {
+    match share {
+        s if s > MISSING_WRONG => Severity::Untrusted,
+        s if s > MISSING_IN_DOUBT => Severity::Doubtful,
+        _ => Severity::Note,
+    }
+}
+
+/// How many times a photon something happened, which may be more than once.
+fn times(share: f64) -> String {
+    match share {
+        s if s >= 1.0 => format!("{s:.1}"),
+        s if s >= 1e-3 => format!("{s:.3}"),
+        s => format!("{s:.0e}"),
+    }
 }

@@ -206,6 +206,9 @@ impl SceneBuilder {
                     starts,
                     emitter_colours,
                 };
+                if let Some((surface, e)) = endless::of_room(&scene) {
+                    return Err(vec![e.placed(places[surface.0 as usize])]);
+                }
                 (scene.clashes, scene.found) = found::look(&scene, &options);
                 Ok(scene)
             }
