@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use crate::emitter::Emits;
 use crate::error::warning::{Severity, Warning};
-use crate::geometry::{Shape, SurfaceId};
+use crate::geometry::{Shape, SurfaceId, Whereabouts};
 use crate::scene::Scene;
 use crate::scene::receiver::{Receiver, ReceiverEvents};
 use crate::surface::Kind;
@@ -22,6 +22,8 @@ const LONG: f64 = 1000.0;
 const POINTS: usize = 16;
 /// Emitters that look.
 const MOST_EMITTERS: usize = 16;
+/// Clear faces looked through.
+const MOST_FACES: usize = 64;
 /// Surfaces named.
 const NAMED: usize = 5;
 
@@ -134,15 +136,29 @@ fn before(scene: &Scene, receiver: &Receiver) -> Option<SurfaceId> {
         for point in &points {
             looks += 1;
             let Some(direction) = (*point - from).try_normalize() else { continue };
-            let Some(hit) = scene.geometry.nearest(from, direction, &start, &mut 0) else { continue };
-            match seen.iter_mut().find(|(s, _)| *s == hit.surface) {
+            let Some(surface) = first_opaque(scene, from, direction, start.clone()) else { continue };
+            match seen.iter_mut().find(|(s, _)| *s == surface) {
                 Some((_, count)) => *count += 1,
-                None => seen.push((hit.surface, 1)),
+                None => seen.push((surface, 1)),
             }
         }
     }
     let (surface, count) = seen.into_iter().max_by_key(|(_, count)| *count)?;
     (surface != receiver.surface && 2 * count > looks).then_some(surface)
+}
+
+/// The first surface on a straight line that is not clear.
+fn first_opaque(scene: &Scene, from: DVec3, direction: DVec3, mut at: Whereabouts) -> Option<SurfaceId> {
+    let mut origin = from;
+    for _ in 0..MOST_FACES {
+        let hit = scene.geometry.nearest(origin, direction, &at, &mut 0)?;
+        if !scene.material(hit.surface).is_transparent() {
+            return Some(hit.surface);
+        }
+        scene.media.leave(&mut at, &hit, hit.other_side());
+        origin = hit.position;
+    }
+    None
 }
 
 /// Clear surfaces and mirrors that no photon met.

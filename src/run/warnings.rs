@@ -107,18 +107,23 @@ impl Run<'_> {
         let found = mixed::probe(self.scene).into_iter();
         found.filter(|m| m.share >= MIXED && !contradicted.contains_key(&m.sheet)).map(|mixed| {
             let (name, [here, there]) = (self.name(mixed.sheet), mixed.media.map(|m| self.scene.media.ior(m)));
-            let witness = match mixed.witness {
-                Witness::Emitter(i) => format!("emitter \"{}\" lights directly", self.scene.emitter_names[i]),
-                Witness::Camera => "the camera sees directly".to_owned(),
+            let reach = format!("{} of all photons reach, through the open surface \"{name}\"", percent(mixed.share));
+            let directly = |witness: String| {
+                format!("{reach} and in a medium of refractive index {here}, what {witness} directly, in one of {there}")
+            };
+            let message = match mixed.witness {
+                Witness::Emitter(i) => directly(format!("emitter \"{}\" lights", self.scene.emitter_names[i])),
+                Witness::Camera => directly("the camera sees".to_owned()),
+                Witness::Place(surface) => format!(
+                    "{reach}, places in a medium of refractive index {here} with nothing between them and places on \"{}\" that \
+                     light reaches beside it, in one of {there}",
+                    self.name(surface)
+                ),
             };
             Warning {
                 severity: Severity::Doubtful,
                 code: "mixed-media",
-                message: format!(
-                    "{} of all photons reach, through the open surface \"{name}\" and in a medium of refractive index {here}, \
-                     what {witness}, in one of {there}",
-                    percent(mixed.share)
-                ),
+                message,
                 surfaces: vec![name],
                 share: Some(mixed.share),
                 remedy: "a pane or a lens has two faces: draw a closed body (a box), or a second sheet whose front looks out on \

@@ -21,6 +21,7 @@ pub(super) fn warnings(scene: &Scene, options: &[SurfaceOptions]) -> Vec<Warning
     let clear = || ids().filter(|s| scene.material(*s).is_transparent());
     let mut all: Vec<Warning> = clear().filter_map(|s| relative_index(scene, s)).collect();
     all.extend(ids().filter(is_body).filter_map(|s| nested_in_the_same(scene, s)));
+    all.extend(ids().filter(is_body).filter_map(|s| nested_part(scene, s)));
     all.extend(clear().filter_map(|s| doubled_faces(scene, s)));
     all.extend(ids().filter(is_body).flat_map(|body| {
         let solid = ids().filter(|s| scene.media.role(*s) == Role::Solid);
@@ -117,6 +118,25 @@ fn nested_in_the_same(scene: &Scene, body: SurfaceId) -> Option<Warning> {
         surfaces: vec![inner, outer],
         share: None,
         remedy: "if it is meant as a cavity, it is a body of air: `ior = 1`".into(),
+    })
+}
+
+/// A part of a mesh in another part of it, wound alike.
+fn nested_part(scene: &Scene, surface: SurfaceId) -> Option<Warning> {
+    scene.geometry.has_nested_part(surface).then(|| {
+        let name = name(scene, surface);
+        Warning {
+            severity: Severity::Note,
+            code: "same-medium",
+            message: format!(
+                "a part of the mesh \"{name}\" lies inside another part of it and is wound the same way: it bounds nothing, light \
+                 goes through it as if it were not there"
+            ),
+            surfaces: vec![name],
+            share: None,
+            remedy: "if it is meant as a cavity, wind its faces the other way round, or make it a body of its own, of air: `ior = 1`"
+                .into(),
+        }
     })
 }
 
