@@ -49,8 +49,8 @@ const PHOTONS: u64 = 4096;
 /// Photons where each takes long.
 const FEWER: u64 = 256;
 
-/// What a run of this scene would say of itself, to a few photons and eye paths; what was found without them, too. How many
-/// photons that were, and the time that a million takes, s.
+/// What a run of this scene would say of itself, to a few photons and eye paths; what was found without them, too.
+/// How many photons that were, and the time that a million takes, s.
 struct Probed {
     photons: u64,
     million_s: f64,

@@ -47,8 +47,8 @@ const MOST_PARTS: usize = 8;
 const FACES_OF_A_PART: usize = 4;
 
 impl Geometry {
-    /// Whether a mesh has a part that lies inside another one and is wound the same way: behind each of its faces the mesh winds
-    /// around a point once more than before it, where that is inside already.
+    /// Whether a mesh has a part that lies inside another one and is wound the same way: behind each of its faces
+    /// the mesh winds around a point once more than before it, where that is inside already.
     pub fn has_nested_part(&self, surface: SurfaceId) -> bool {
         let (Shape::Mesh(mesh), Body::Layered) =
             (&self.surfaces[surface.0 as usize].shape, self.info[surface.0 as usize].body)

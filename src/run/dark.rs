@@ -1,5 +1,5 @@
-//! What a run did not light: receivers at which nothing arrived, clear bodies and mirrors that no photon met; and how long its
-//! photons were on their way.
+//! What a run did not light: receivers at which nothing arrived, clear bodies and mirrors that no photon met; and
+//! how long its photons were on their way.
 
 use glam::DVec3;
 

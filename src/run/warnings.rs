@@ -266,8 +266,8 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// How much it matters that this share of all photons is missing. (A ray that passes through an edge, to the last bit, may be
-/// lost: that is no crack.)
+/// How much it matters that this share of all photons is missing. (A ray that passes through an edge, to the last
+/// bit, may be lost: that is no crack.)
 fn of_missing(share: f64) -> Severity {
     match share {
         s if s > MISSING_WRONG => Severity::Untrusted,

@@ -1,5 +1,5 @@
-//! Clear bodies that are not what they look like: of an index below that of air, in a body of their own index, with faces
-//! given twice, cut by something opaque, glued to nothing.
+//! Clear bodies that are not what they look like: of an index below that of air, in a body of their own index,
+//! with faces given twice, cut by something opaque, glued to nothing.
 
 use std::collections::HashMap;
 

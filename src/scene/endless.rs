@@ -23,8 +23,8 @@ const MOST_FACES: u32 = 4 * MOST_REFLECTIONS;
 /// Surfaces named.
 const NAMED: usize = 6;
 
-/// The refusal of a scene of separate surfaces in which nothing absorbs, if most light does not find a way out; the first of
-/// the surfaces between which it goes round.
+/// The refusal of a scene of separate surfaces in which nothing absorbs, if most light does not find a way out;
+/// the first of the surfaces between which it goes round.
 pub(super) fn of_room(scene: &Scene) -> Option<(SurfaceId, Diagnostic)> {
     let ids = (0..scene.materials().len() as u32).map(SurfaceId);
     let walls: Vec<SurfaceId> = ids.filter(|s| !scene.material(*s).is_transparent()).collect();

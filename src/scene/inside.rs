@@ -1,4 +1,4 @@
-//! What stands inside something: lamps and cameras in what no light gets out of, and anything in a clear body.
+//! What stands inside something: lamps and cameras in what no light gets out of, anything in a clear body.
 
 use glam::DVec3;
 
@@ -117,7 +117,7 @@ fn camera_in(scene: &Scene, wall: SurfaceId) -> Option<Warning> {
     })
 }
 
-/// Lamps, camera and receivers in a clear body: legal, but also what units and places that are mixed up look like.
+/// Lamps, camera and receivers in a clear body: legal, but also what mixed up units and places look like.
 fn all_in(scene: &Scene, body: SurfaceId) -> Option<Warning> {
     let mut within: Vec<String> = lamps(scene, body).collect();
     let camera = scene.camera.as_ref().filter(|camera| is_inside(&scene.geometry, body, camera.position));

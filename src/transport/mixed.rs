@@ -127,7 +127,7 @@ const LOOKS: usize = 8;
 /// A place is so far off the surface, of the distance of the two.
 const OFF: f64 = 0.1;
 
-/// Places behind a sheet from which one sees, with nothing between, places in another medium that are lit without it.
+/// Places behind a sheet from which one sees, with nothing between, places in another medium lit without it.
 fn beside<'a>(scene: &'a Scene, places: &'a [Place]) -> impl Iterator<Item = Found> + 'a {
     let lit_without: Vec<&Place> = places.iter().filter(|place| place.sheet.is_none()).collect();
     places.iter().enumerate().filter_map(move |(i, here)| {
