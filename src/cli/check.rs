@@ -12,6 +12,7 @@ use crate::geometry::Shape;
 use crate::picture;
 use crate::report::json::json;
 use crate::report::numbers::digits;
+use crate::run::dark::is_long;
 use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
@@ -45,14 +46,40 @@ struct Probe {
 /// Photons of the probe.
 const PHOTONS: u64 = 4096;
 
+/// Photons where each takes long.
+const FEWER: u64 = 256;
+
 /// What a run of this scene would say of itself, to a few photons and eye paths; what was found without them, too.
-fn probe(scene: &Scene) -> Result<Vec<Warning>> {
-    let settings = Settings { photons: Some(PHOTONS), replicates: Some(1), ..Settings::default() };
-    let outcome = trace(scene, &Plan::new(&settings)?, &AtomicBool::new(false), &|_| {})?;
+/// How many photons that were, and the time that a million takes, s.
+struct Probed {
+    photons: u64,
+    million_s: f64,
+    said: Vec<Warning>,
+}
+
+fn probe(scene: &Scene) -> Result<Probed> {
+    let of = |photons| {
+        let settings = Settings { photons: Some(photons), replicates: Some(1), ..Settings::default() };
+        trace(scene, &Plan::new(&settings)?, &AtomicBool::new(false), &|_| {})
+    };
+    let mut outcome = of(FEWER)?;
+    if !is_long(&outcome) {
+        outcome = of(PHOTONS)?;
+    }
     let mut said = warnings(scene, &outcome);
     said.extend(picture::probe(scene)?);
     said.sort_by_key(|warning| Reverse(warning.severity));
-    Ok(said)
+    let million_s = if is_long(&outcome) { 1e6 * outcome.trace_s / outcome.photons as f64 } else { 0.0 };
+    Ok(Probed { photons: outcome.photons, million_s, said })
+}
+
+/// A time in words.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s >= 5400.0 => format!("{:.1} hours", s / 3600.0),
+        s if s >= 90.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{s:.0} s"),
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -95,7 +122,7 @@ struct ErrorCheck {
 }
 
 impl Check {
-    fn of_scene(scene: &Scene, said: &[Warning]) -> Self {
+    fn of_scene(scene: &Scene, Probed { photons, said, .. }: &Probed) -> Self {
         let surfaces = scene.geometry.surfaces().iter().map(|s| {
             let (triangles, open_edges) = match &s.shape {
                 Shape::Mesh(mesh) => (mesh.triangles().len(), mesh.topology().open_edges),
@@ -141,7 +168,7 @@ impl Check {
             memory_mb: memory_bytes as f64 / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
-            probe: (!said.is_empty()).then(|| Probe { photons: PHOTONS, warnings: said.to_vec() }),
+            probe: (!said.is_empty()).then(|| Probe { photons: *photons, warnings: said.clone() }),
         }
     }
 
@@ -195,18 +222,19 @@ pub fn run(args: &CheckArgs) -> Done {
     if args.json {
         let check = ready
             .as_ref()
-            .map_or_else(|errors| Check::of_errors(errors), |(said, scene)| Check::of_scene(scene, said));
+            .map_or_else(|errors| Check::of_errors(errors), |(probed, scene)| Check::of_scene(scene, probed));
         print(&json(&check)?);
-        let said = ready.iter().flat_map(|(said, _)| said);
+        let said = ready.iter().flat_map(|(probed, _)| &probed.said);
         return Ok(if check.ok { strictly(args.strict, exit::DONE, said) } else { exit::WRONG });
     }
-    let (said, scene) = ready?;
+    let (probed, scene) = ready?;
     warn(&scene.warnings);
-    for warning in &said {
+    let Probed { photons, million_s, said } = &probed;
+    for warning in said {
         if scene.found.contains(warning) {
             say_found(warning);
         } else {
-            say(&format!("warning (found by a probe of {PHOTONS} photons): {warning}"));
+            say(&format!("warning (found by a probe of {photons} photons): {warning}"));
         }
     }
     let worst = match said.iter().map(|warning| warning.severity).max() {
@@ -215,7 +243,10 @@ pub fn run(args: &CheckArgs) -> Done {
         Some(Severity::Doubtful) => "numbers would be doubtful (see the warnings)",
         Some(Severity::Untrusted) => "numbers would be wrong (see the warnings)",
     };
-    print(&Check::of_scene(&scene, &said).text(&scene.identity.name));
-    print(&format!("probe      {PHOTONS} photons: {worst}\n"));
-    Ok(strictly(args.strict, exit::DONE, &said))
+    print(&Check::of_scene(&scene, &probed).text(&scene.identity.name));
+    print(&format!("probe      {photons} photons: {worst}\n"));
+    if *million_s > 0.0 {
+        print(&format!("time       about {} for a million photons\n", duration(*million_s)));
+    }
+    Ok(strictly(args.strict, exit::DONE, said))
 }

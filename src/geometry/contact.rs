@@ -5,6 +5,8 @@
 //! its own body's face first, then stands in the film, before the other face. Where they are glued there is no film, and
 //! both are crossed at once, as are faces that look the same way.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
 use super::bvh::{BinaryTree, Bounds};
@@ -61,6 +63,8 @@ pub(super) struct Contacts {
     pairs: Vec<Contact>,
     /// Pairs of transparent closed surfaces that cut each other; twice the same for one that cuts itself.
     cuts: Vec<[SurfaceId; 2]>,
+    /// Transparent closed surfaces, and opaque ones that cut them.
+    solid_cuts: Vec<[SurfaceId; 2]>,
     /// Faces that all but touch.
     near: Vec<Near>,
 }
@@ -78,6 +82,8 @@ impl Contacts {
             return Self::default();
         }
         let (mut found, mut nearly) = (Self::default(), Nearly::new(surfaces, info));
+        // Of a body and a face of an opaque surface: the sides from which the body's faces touch it.
+        let mut sides: BTreeMap<(u32, u32), [bool; 2]> = BTreeMap::new();
         let is_body = |s: u32| bonds[s as usize].is_clear && info[s as usize].body != Body::Open;
         pairs_of_boxes((tree, boxes, owner), is_body, |p, q| {
             let (s, t) = (owner[p as usize], owner[q as usize]);
@@ -89,6 +95,24 @@ impl Contacts {
                     let are_neighbours = s == t && a.iter().any(|v| b.contains(v));
                     if is_body(s) && is_body(t) && !are_neighbours && cut(&a, &b) {
                         found.cuts.push([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
+                    }
+                    for ([body, solid], [of_body, of_solid], face) in
+                        [([s, t], [&a, &b], q), ([t, s], [&b, &a], p)]
+                    {
+                        let pair = [SurfaceId(body), SurfaceId(solid)];
+                        // One cut is enough.
+                        if !is_body(body)
+                            || bonds[solid as usize].is_clear
+                            || found.solid_cuts.contains(&pair)
+                        {
+                            continue;
+                        }
+                        let side = touches_from(of_body, of_solid);
+                        let seen = sides.entry((body, face)).or_default();
+                        side.into_iter().for_each(|side| seen[usize::from(side)] = true);
+                        if *seen == [true; 2] || cut(of_body, of_solid) {
+                            found.solid_cuts.push(pair);
+                        }
                     }
                     let facing = facing(&a, &b);
                     if facing.is_none() && s != t {
@@ -126,6 +150,11 @@ impl Contacts {
     /// itself.
     pub fn cuts(&self) -> &[[SurfaceId; 2]] {
         &self.cuts
+    }
+
+    /// Transparent closed surfaces, and opaque ones that cut them.
+    pub fn solid_cuts(&self) -> &[[SurfaceId; 2]] {
+        &self.solid_cuts
     }
 
     /// Pairs of surfaces that all but touch.
@@ -214,6 +243,22 @@ fn coincide(a: &Shape, b: &Shape) -> bool {
         (Shape::Paraboloid(a), Shape::Paraboloid(b)) => a == b,
         _ => false,
     }
+}
+
+/// The side, of the two of a triangle's plane, on which another one is that has a corner inside the triangle.
+fn touches_from(other: &[DVec3; 3], t: &[DVec3; 3]) -> Option<bool> {
+    let (rounding, n) = (rounding(other, t), normal(t).try_normalize()?);
+    let heights = other.map(|v| (v - t[0]).dot(n));
+    let is_within = |v: DVec3| {
+        (0..3).all(|k| {
+            let edge = t[(k + 1) % 3] - t[k];
+            n.cross(edge).dot(v - t[k]) > rounding * edge.length()
+        })
+    };
+    let touches = other.iter().zip(heights).any(|(v, height)| height.abs() <= rounding && is_within(*v));
+    let [is_below, is_above] =
+        [heights.iter().any(|h| *h < -rounding), heights.iter().any(|h| *h > rounding)];
+    (touches && is_below != is_above).then_some(is_above)
 }
 
 /// Whether an edge of one triangle passes through the inside of the other, by more than the rounding of their corners.

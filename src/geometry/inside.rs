@@ -1,7 +1,10 @@
 //! On which side of a closed surface a point lies, from geometry alone: asked once, where a photon starts.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 
+use super::openings::part_of;
 use super::{Body, Geometry, Mesh, Shape, SurfaceId};
 
 impl Geometry {
@@ -39,12 +42,45 @@ impl Geometry {
     }
 }
 
-/// How often the surface winds around the point: the sum of signed solid angles over 4 pi.
+/// Parts of a mesh that are looked at, and faces of each.
+const MOST_PARTS: usize = 8;
+const FACES_OF_A_PART: usize = 4;
+
+impl Geometry {
+    /// Whether a mesh has a part that lies inside another one and is wound the same way: behind each of its faces
+    /// the mesh winds around a point once more than before it, where that is inside already.
+    pub fn has_nested_part(&self, surface: SurfaceId) -> bool {
+        let (Shape::Mesh(mesh), Body::Layered) =
+            (&self.surfaces[surface.0 as usize].shape, self.info[surface.0 as usize].body)
+        else {
+            return false;
+        };
+        let mut faces_of: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (face, part) in part_of(mesh.vertices().len(), mesh.triangles()).into_iter().enumerate() {
+            faces_of.entry(part).or_default().push(face);
+        }
+        let sign = mesh.topology().signed_volume_m3.signum();
+        faces_of.values().take(MOST_PARTS).any(|faces| {
+            let step = faces.len().div_ceil(FACES_OF_A_PART);
+            faces.iter().step_by(step).all(|&face| {
+                let [a, b, c] = mesh.triangle(face);
+                // The face itself sees half of everything on either side: n + 1/2 is between n and n + 1.
+                sign * winding_of_all_but(mesh, (a + b + c) / 3.0, Some(face)) > 1.25
+            })
+        })
+    }
+}
+
+fn winding_number(mesh: &Mesh, point: DVec3) -> f64 {
+    winding_of_all_but(mesh, point, None)
+}
+
+/// How often the surface, without one face, winds around the point: the sum of signed solid angles over 4 pi.
 ///
 /// Solid angle of a triangle: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125.
-fn winding_number(mesh: &Mesh, point: DVec3) -> f64 {
+fn winding_of_all_but(mesh: &Mesh, point: DVec3, left_out: Option<usize>) -> f64 {
     let mut half_angle = 0.0;
-    for face in 0..mesh.triangles().len() {
+    for face in (0..mesh.triangles().len()).filter(|face| Some(*face) != left_out) {
         let [a, b, c] = mesh.triangle(face).map(|v| v - point);
         let (la, lb, lc) = (a.length(), b.length(), c.length());
         let numerator = a.dot(b.cross(c));

@@ -261,6 +261,11 @@ impl Geometry {
         self.contacts.cuts()
     }
 
+    /// Clear bodies and opaque surfaces whose triangles cut each other.
+    fn solid_cuts(&self) -> &[[SurfaceId; 2]] {
+        self.contacts.solid_cuts()
+    }
+
     /// The surface of this name.
     pub fn surface_named(&self, name: &str) -> Option<SurfaceId> {
         self.surfaces.iter().position(|s| s.name == name).map(|i| SurfaceId(i as u32))

@@ -6,13 +6,17 @@ use glam::{DVec3, I64Vec3};
 
 /// Number of parts that share no vertex.
 pub fn parts(vertices: usize, triangles: &[[u32; 3]]) -> usize {
+    part_of(vertices, triangles).into_iter().collect::<BTreeSet<u32>>().len()
+}
+
+/// The part of each triangle, by a number that its triangles share.
+pub fn part_of(vertices: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut groups = Groups::of(vertices);
     for [a, b, c] in triangles {
         groups.join(*a, *b);
         groups.join(*a, *c);
     }
-    let used: BTreeSet<u32> = triangles.iter().map(|t| groups.root(t[0])).collect();
-    used.len()
+    triangles.iter().map(|t| groups.root(t[0])).collect()
 }
 
 /// Open edges whose ends are nearer than this share of the mesh's size face each other across a crack.

@@ -24,6 +24,18 @@ impl Geometry {
         }
     }
 
+    /// Whether an opaque surface passes through the faces of a clear body.
+    pub fn is_cut_by(&self, body: SurfaceId, solid: SurfaceId) -> bool {
+        let shape = |s: SurfaceId| &self.surfaces()[s.0 as usize].shape;
+        match (shape(body), shape(solid)) {
+            (Shape::Sphere(p), Shape::Sphere(q)) => spheres_cut(p, q),
+            // Nothing is known of a paraboloid's.
+            (_, Shape::Paraboloid(_)) => false,
+            (Shape::Sphere(sphere), mesh) | (mesh, Shape::Sphere(sphere)) => cuts_sphere(mesh, sphere),
+            _ => self.solid_cuts().contains(&[body, solid]),
+        }
+    }
+
     /// Whether points of a mesh are inside the body as well as outside.
     fn is_divided(&self, mesh: &Shape, body: SurfaceId) -> bool {
         let faces = mesh.face_count();
@@ -47,7 +59,7 @@ impl Geometry {
     }
 
     /// Whether a point is inside a body; `None` for one on its surface, or next to it.
-    fn contains_surely(&self, body: SurfaceId, point: DVec3) -> Option<bool> {
+    pub(crate) fn contains_surely(&self, body: SurfaceId, point: DVec3) -> Option<bool> {
         let shape = &self.surfaces()[body.0 as usize].shape;
         let (low, high) = shape.bounds();
         let near = ON_SURFACE * (high - low).max_element() + 64.0 * f64::EPSILON * point.abs().max_element();

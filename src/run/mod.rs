@@ -13,6 +13,7 @@ pub mod tracer;
 pub mod outcome;
 pub mod in_turn;
 pub mod replicates;
+pub mod dark;
 pub mod warnings;
 
 pub use algorithm::{Algorithm, Variant};

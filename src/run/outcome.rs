@@ -43,6 +43,8 @@ pub struct Outcome {
     totals: Moments,
     /// Arrivals on the side of each receiver on which it does not count.
     pub turned_away: Vec<u64>,
+    /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
+    pub other_events: Vec<u64>,
     /// Coordinates and exceptions.
     pub census: Census,
     /// Time of tracing, s.
@@ -74,6 +76,7 @@ impl Outcome {
             cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
             totals: Moments::new(scene.receivers.len()),
             turned_away: vec![0; scene.receivers.len()],
+            other_events: vec![0; scene.receivers.len()],
             census: Census::default(),
             trace_s: 0.0,
             stopped_by: StoppedBy::Photons,
@@ -96,8 +99,12 @@ impl Outcome {
         self.census.merge(census);
         let others = [ledger.escaped, ledger.killed, ledger.total_trapped()];
         self.accounts.absorb(ledger.absorbed.iter().copied().chain(others));
-        for (sum, count) in self.turned_away.iter_mut().zip(receivers.turned_away().iter()) {
-            *sum += count;
+        let refused = [
+            (&mut self.turned_away, receivers.turned_away()),
+            (&mut self.other_events, receivers.other_events()),
+        ];
+        for (sums, counts) in refused {
+            sums.iter_mut().zip(counts.iter()).for_each(|(sum, count)| *sum += count);
         }
         self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).total()));
     }
@@ -143,6 +150,7 @@ impl Outcome {
     fn clear_accounts(&mut self) {
         (self.photons, self.replicates, self.census) = (0, 0, Census::default());
         self.turned_away.fill(0);
+        self.other_events.fill(0);
         self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
         [&mut self.accounts, &mut self.totals].into_iter().for_each(Moments::clear);
     }

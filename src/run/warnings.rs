@@ -4,19 +4,23 @@
 use crate::error::warning::{Severity, Warning, four_digits};
 use crate::geometry::{Shape, SurfaceId};
 use crate::scene::Scene;
+use crate::scene::inside::LAMP_INSIDE;
 use crate::scene::receiver::ReceiverSide;
 use crate::scene::sheets::{CLASH, Clash};
 use crate::transport::mixed::{self, Witness};
 
 use super::Outcome;
+use super::dark;
 
 /// The code of light that total reflection keeps.
 pub const TRAPPED: &str = "trapped";
+/// The code of a lamp whose light meets nothing.
+const AIMED_AWAY: &str = "aimed-away";
 
-/// Of a photon's flux: killed walks that take away more than this are more than a receiver's error can hide.
-const KILLED_IN_DOUBT: f64 = 1e-6;
+/// Of all photons: more than this is missing, and it is more than a receiver's error can hide.
+const MISSING_IN_DOUBT: f64 = 1e-6;
 /// And more than this is a wrong number.
-const KILLED_WRONG: f64 = 1e-3;
+const MISSING_WRONG: f64 = 1e-3;
 /// Smooth normals that turn more than this share of photons back change what a mesh does.
 const CORRECTED: f64 = 0.01;
 /// Smooth normals this far off their facets round an edge.
@@ -47,8 +51,13 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     all.extend(run.trapped());
     all.extend(run.killed());
     all.extend(run.corrected());
-    all.extend(run.turned_away());
+    // Of a lamp in a box the receiver on its outside gets nothing, whatever side it counts on.
+    let is_shut = |w: &Warning| all.iter().any(|a| a.code == LAMP_INSIDE && a.surfaces == w.surfaces);
+    let turned_away: Vec<_> = run.turned_away().filter(|w| !is_shut(w)).collect();
+    all.extend(turned_away);
     all.extend(run.aimed_away());
+    let is_told = all.iter().any(|w| [LAMP_INSIDE, AIMED_AWAY].contains(&w.code));
+    all.extend(dark::warnings(scene, outcome, is_told));
     all.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     all
 }
@@ -85,7 +94,7 @@ impl Run<'_> {
                 code: "contradicted-medium",
                 message: format!(
                     "light reached surface \"{name}\" in another medium than the scene says is there, {} times a photon",
-                    percent(share)
+                    times(share)
                 ),
                 surfaces: vec![name],
                 share: Some(share),
@@ -100,18 +109,23 @@ impl Run<'_> {
         let found = mixed::probe(self.scene).into_iter();
         found.filter(|m| m.share >= MIXED && !contradicted.contains_key(&m.sheet)).map(|mixed| {
             let (name, [here, there]) = (self.name(mixed.sheet), mixed.media.map(|m| self.scene.media.ior(m)));
-            let witness = match mixed.witness {
-                Witness::Emitter(i) => format!("emitter \"{}\" lights directly", self.scene.emitter_names[i]),
-                Witness::Camera => "the camera sees directly".to_owned(),
+            let reach = format!("{} of all photons reach, through the open surface \"{name}\"", percent(mixed.share));
+            let directly = |witness: String| {
+                format!("{reach} and in a medium of refractive index {here}, what {witness} directly, in one of {there}")
+            };
+            let message = match mixed.witness {
+                Witness::Emitter(i) => directly(format!("emitter \"{}\" lights", self.scene.emitter_names[i])),
+                Witness::Camera => directly("the camera sees".to_owned()),
+                Witness::Place(surface) => format!(
+                    "{reach}, places in a medium of refractive index {here} with nothing between them and places on \"{}\" that \
+                     light reaches beside it, in one of {there}",
+                    self.name(surface)
+                ),
             };
             Warning {
                 severity: Severity::Doubtful,
                 code: "mixed-media",
-                message: format!(
-                    "{} of all photons reach, through the open surface \"{name}\" and in a medium of refractive index {here}, \
-                     what {witness}, in one of {there}",
-                    percent(mixed.share)
-                ),
+                message,
                 surfaces: vec![name],
                 share: Some(mixed.share),
                 remedy: "a pane or a lens has two faces: draw a closed body (a box), or a second sheet whose front looks out on \
@@ -125,7 +139,7 @@ impl Run<'_> {
         self.outcome.census.exceptions.lost.iter().map(|(&surface, &count)| {
             let (name, share) = (self.name(surface), count as f64 / self.photons);
             Warning {
-                severity: Severity::Untrusted,
+                severity: of_missing(share),
                 code: "lost-in-body",
                 message: format!("{} of all photons left the scene inside \"{name}\"", percent(share)),
                 surfaces: vec![name],
@@ -158,14 +172,8 @@ impl Run<'_> {
 
     fn killed(&self) -> Option<Warning> {
         let share = self.outcome.ledger.killed as f64 / self.photons;
-        let severity = match share {
-            0.0 => return None,
-            s if s > KILLED_WRONG => Severity::Untrusted,
-            s if s > KILLED_IN_DOUBT => Severity::Doubtful,
-            _ => Severity::Note,
-        };
-        Some(Warning {
-            severity,
+        (share > 0.0).then(|| Warning {
+            severity: of_missing(share),
             code: "killed",
             message: format!(
                 "{} of all photons were ended after {} events, before they were absorbed or had left; receivers that \
@@ -207,7 +215,7 @@ impl Run<'_> {
                 "smooth normals of {}, up to {tilt_deg:.0} degrees off their facets, sent light to the wrong side of the facet, \
                  {} times a photon, and it was mirrored back",
                 surfaces.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "),
-                percent(share)
+                times(share)
             ),
             surfaces,
             share: Some(share),
@@ -265,7 +273,7 @@ impl Run<'_> {
             }
             Some(Warning {
                 severity: Severity::Doubtful,
-                code: "aimed-away",
+                code: AIMED_AWAY,
                 message: format!(
                     "{} of the light of emitter \"{}\" leaves the scene without meeting any surface",
                     percent(share),
@@ -285,5 +293,24 @@ pub fn percent(share: f64) -> String {
         p if p >= 10.0 => format!("{p:.0} %"),
         p if p >= 0.01 => format!("{p:.2} %"),
         p => format!("{p:.0e} %"),
+    }
+}
+
+/// How much it matters that this share of all photons is missing. (A ray that passes through an edge, to the last
+/// bit, may be lost: that is no crack.)
+fn of_missing(share: f64) -> Severity {
+    match share {
+        s if s > MISSING_WRONG => Severity::Untrusted,
+        s if s > MISSING_IN_DOUBT => Severity::Doubtful,
+        _ => Severity::Note,
+    }
+}
+
+/// How many times a photon something happened, which may be more than once.
+fn times(share: f64) -> String {
+    match share {
+        s if s >= 1.0 => format!("{s:.1}"),
+        s if s >= 1e-3 => format!("{s:.3}"),
+        s => format!("{s:.0e}"),
     }
 }

@@ -214,6 +214,9 @@ impl SceneBuilder {
                     starts,
                     emitter_colours,
                 };
+                if let Some((surface, e)) = endless::of_room(&scene) {
+                    return Err(vec![e.placed(places[surface.0 as usize])]);
+                }
                 (scene.clashes, scene.found) = found::look(&scene, &options);
                 scene.found.extend(self.told);
                 Ok(scene)

@@ -4,7 +4,7 @@ use crate::error::warning::{Severity, Warning};
 use crate::geometry::{Near, Shape, SurfaceId};
 
 use super::sheets::Clash;
-use super::{Joint, Scene, SurfaceOptions, near_field, sheets, sizes, units};
+use super::{Joint, Scene, SurfaceOptions, bodies, inside, near_field, sheets, sizes, units};
 
 /// What is to be said of a scene beside every number of it; the pairs of open surfaces that contradict each other, of which
 /// some of that is.
@@ -22,6 +22,8 @@ pub(super) fn look(scene: &Scene, options: &[SurfaceOptions]) -> (Vec<Clash>, Ve
             .chain(of_lamps)
             .chain(sizes::warning(scene))
             .chain(units::warnings(scene))
+            .chain(bodies::warnings(scene, options))
+            .chain(inside::warnings(scene))
             .collect(),
     )
 }

@@ -3,6 +3,7 @@
 //! A [`SceneBuilder`] collects the parts, whose constructors refuse what cannot be, and checks what they are together. After
 //! that nothing is checked again.
 
+mod bodies;
 pub mod builder;
 pub mod camera;
 pub mod check;
@@ -11,6 +12,7 @@ mod endless;
 mod facets;
 mod figure;
 mod found;
+pub mod inside;
 pub mod media;
 mod near_field;
 mod options;

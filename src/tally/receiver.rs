@@ -26,6 +26,15 @@ pub struct Receivers<'s> {
     counts: Vec<Counts>,
     /// Arrivals on the side of each receiver on which it does not count.
     turned_away: Counts,
+    /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
+    other_events: Counts,
+}
+
+/// Why an arrival on a receiver's surface does not count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Refused {
+    Side,
+    Events,
 }
 
 impl<'s> Routes<'s> {
@@ -43,7 +52,7 @@ impl<'s> Routes<'s> {
         &self,
         arrival: &Arrival<'_, T>,
         mut add: impl FnMut(usize, usize),
-        mut turn_away: impl FnMut(usize),
+        mut turn_away: impl FnMut(usize, Refused),
     ) {
         for &i in &self.on_surface[arrival.hit.surface.0 as usize] {
             let receiver = &self.receivers[i as usize];
@@ -58,12 +67,10 @@ impl<'s> Routes<'s> {
                 ReceiverEvents::Indirect => arrival.events > 0,
             };
             if !side {
-                turn_away(i as usize);
-            }
-            if side
-                && history
-                && let Some(cell) = self.cell(receiver, arrival.hit)
-            {
+                turn_away(i as usize, Refused::Side);
+            } else if !history {
+                turn_away(i as usize, Refused::Events);
+            } else if let Some(cell) = self.cell(receiver, arrival.hit) {
                 add(i as usize, cell);
             }
         }
@@ -87,7 +94,8 @@ impl<'s> Receivers<'s> {
     /// Counters at zero for these receivers.
     pub fn new(geometry: &'s Geometry, receivers: &'s [Receiver]) -> Self {
         let counts = receivers.iter().map(|r| Counts::new(r.cells.len())).collect();
-        Self { routes: Routes::new(geometry, receivers), counts, turned_away: Counts::new(receivers.len()) }
+        let [turned_away, other_events] = [0; 2].map(|_| Counts::new(receivers.len()));
+        Self { routes: Routes::new(geometry, receivers), counts, turned_away, other_events }
     }
 
     /// A handle for one batch of photons; all handles add to the same counters.
@@ -110,9 +118,15 @@ impl<'s> Receivers<'s> {
         &self.turned_away
     }
 
+    /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
+    pub fn other_events(&self) -> &Counts {
+        &self.other_events
+    }
+
     /// Sets everything to zero, for the next replicate.
     pub fn clear(&mut self) {
         self.turned_away.clear();
+        self.other_events.clear();
         self.counts.iter_mut().for_each(Counts::clear);
     }
 }
@@ -131,7 +145,10 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
         all.routes.each_cell(
             arrival,
             |receiver, cell| all.counts[receiver].add(cell, 1),
-            |receiver| all.turned_away.add(receiver, 1),
+            |receiver, why| match why {
+                Refused::Side => all.turned_away.add(receiver, 1),
+                Refused::Events => all.other_events.add(receiver, 1),
+            },
         );
     }
 }
@@ -150,7 +167,7 @@ impl<T> Sink<T> for FixedPointSink<'_, '_> {
     fn arrive(&mut self, arrival: &Arrival<'_, T>) {
         let all = self.receivers;
         let add = |receiver: usize, cell| all.counts[receiver].add(cell, self.amount);
-        all.routes.each_cell(arrival, add, |_| {});
+        all.routes.each_cell(arrival, add, |_, _| {});
     }
 
     #[inline]

@@ -106,7 +106,7 @@ impl Sink<Fixed> for ChannelSink<'_, '_> {
                 sum.fetch_add(quanta, Ordering::Relaxed);
             }
         };
-        all.routes.each_cell(arrival, add, |_| {});
+        all.routes.each_cell(arrival, add, |_, _| {});
     }
 }
 

@@ -24,6 +24,25 @@ pub struct Exceptions {
     /// Photons that met no further surface while they were inside these bodies.
     #[serde(skip)]
     pub lost: BTreeMap<SurfaceId, u64>,
+    /// Arrivals after which photons went on, but for total reflections.
+    #[serde(skip)]
+    pub events: u64,
+    /// Surfaces that photons met, a bit each; from the 65th on they share those of the first.
+    #[serde(skip)]
+    pub met: u64,
+}
+
+impl Exceptions {
+    /// A surface is met.
+    #[inline]
+    pub fn meets(&mut self, surface: SurfaceId) {
+        self.met |= 1 << (surface.0 % u64::BITS);
+    }
+
+    /// Whether a photon may have met a surface: surely not, where this is false.
+    pub fn may_have_met(&self, surface: SurfaceId) -> bool {
+        self.met >> (surface.0 % u64::BITS) & 1 == 1
+    }
 }
 
 /// Counts of surfaces, as the count of all of them.
@@ -114,6 +133,8 @@ impl Census {
         add(&mut self.exceptions.corrected_directions, &other.exceptions.corrected_directions);
         add(&mut self.exceptions.contradicted, &other.exceptions.contradicted);
         add(&mut self.exceptions.lost, &other.exceptions.lost);
+        self.exceptions.events += other.exceptions.events;
+        self.exceptions.met |= other.exceptions.met;
         add(&mut self.missed, &other.missed);
     }
 }

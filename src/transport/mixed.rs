@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::emitter::Emits;
-use crate::geometry::{Side, SurfaceId};
+use crate::geometry::{Side, SurfaceId, Whereabouts};
 use crate::sample::coordinates::Coordinates;
 use crate::sample::method::Sampling;
 use crate::scene::Scene;
@@ -35,6 +35,8 @@ pub enum Witness {
     Emitter(usize),
     /// The camera.
     Camera,
+    /// A place that other light reaches without it, with nothing between the two.
+    Place(SurfaceId),
 }
 
 /// Places behind an open surface that are seen past it.
@@ -65,12 +67,15 @@ pub fn probe(scene: &Scene) -> Vec<Mixed> {
     let follow = |index: u64| {
         let mut coordinates = Coordinates::new(&points, index, true);
         let (emitter, emission) = scene.emitters.emit(Sampling::default(), &mut coordinates)?;
-        let mut places = Places { scene, camera, index: index as usize, sheet: None, found: None };
+        let mut places =
+            Places { scene, camera, index: index as usize, sheet: None, found: None, place: None };
         let start = scene.start(emitter);
         walk(scene, emission, start, Grey, &mut coordinates, &mut places, &mut Exceptions::default());
-        places.found
+        Some((places.found, places.place))
     };
-    let found: Vec<_> = (0..PROBE).into_par_iter().filter_map(follow).collect();
+    let (found, places): (Vec<_>, Vec<_>) = (0..PROBE).into_par_iter().filter_map(follow).unzip();
+    let places: Vec<Place> = places.into_iter().flatten().collect();
+    let found = found.into_iter().flatten().chain(beside(scene, &places));
     let mut counts: BTreeMap<SurfaceId, (u64, Found)> = BTreeMap::new();
     for found in found {
         let (count, first) = counts.entry(found.sheet).or_insert((0, found));
@@ -101,11 +106,59 @@ struct Places<'a> {
     /// The open surface met last.
     sheet: Option<SurfaceId>,
     found: Option<Found>,
+    /// Where it first arrived at an opaque surface, outside all bodies.
+    place: Option<Place>,
+}
+
+/// A point on a photon's way, shortly before it arrives at an opaque surface.
+#[derive(Debug, Clone)]
+struct Place {
+    /// Where it arrives, and on what.
+    arrival: DVec3,
+    surface: SurfaceId,
+    /// From there back on its way, m, as far as it may be gone.
+    back: DVec3,
+    at: Whereabouts,
+    sheet: Option<SurfaceId>,
+}
+
+/// Places that are looked at from each.
+const LOOKS: usize = 8;
+/// A place is so far off the surface, of the distance of the two.
+const OFF: f64 = 0.1;
+
+/// Places behind a sheet from which one sees, with nothing between, places in another medium lit without it.
+fn beside<'a>(scene: &'a Scene, places: &'a [Place]) -> impl Iterator<Item = Found> + 'a {
+    let lit_without: Vec<&Place> = places.iter().filter(|place| place.sheet.is_none()).collect();
+    places.iter().enumerate().filter_map(move |(i, here)| {
+        let sheet = here.sheet?;
+        (0..LOOKS.min(lit_without.len())).find_map(|k| {
+            let there = lit_without[(LOOKS * i + k) % lit_without.len()];
+            let media = [here.at.ambient(), there.at.ambient()];
+            let apart = (there.arrival - here.arrival).length();
+            let before = |p: &Place| p.arrival + p.back * (OFF * apart / p.back.length()).min(0.5);
+            let (from, to) = (before(here), before(there));
+            let direction = (to - from).try_normalize()?;
+            let is_seen = media[0] != media[1]
+                && !scene.geometry.occluded(from, direction, (to - from).length(), &here.at);
+            is_seen.then_some(Found { sheet, witness: Witness::Place(there.surface), media })
+        })
+    })
 }
 
 impl Sink for Places<'_> {
     fn arrive(&mut self, arrival: &Arrival<'_>) {
         let (scene, here) = (self.scene, arrival.whereabouts.ambient());
+        let is_solid = scene.media.role(arrival.hit.surface) == Role::Solid;
+        if is_solid && self.place.is_none() && scene.media.bodies_of(arrival.whereabouts).next().is_none() {
+            self.place = Some(Place {
+                arrival: arrival.hit.position,
+                surface: arrival.hit.surface,
+                back: arrival.direction * -arrival.hit.t,
+                at: Whereabouts::start(arrival.whereabouts.behind()).in_ambient(here),
+                sheet: self.sheet,
+            });
+        }
         match scene.media.role(arrival.hit.surface) {
             Role::Open { .. } => self.sheet = Some(arrival.hit.surface),
             Role::Body { .. } => {}

@@ -85,9 +85,11 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
             return if events == 0 { End::Missed } else { End::Escaped };
         };
         sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
+        exceptions.meets(hit.surface);
         if hit.touch.is_some() {
             for joint in scene.geometry.joint_hits(&hit) {
                 let hit = &joint;
+                exceptions.meets(hit.surface);
                 sink.arrive(&Arrival {
                     hit,
                     direction,
@@ -136,6 +138,7 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
         } else {
             reflections = 0;
             guarded += 1;
+            exceptions.events += 1;
         }
     }
     End::Killed

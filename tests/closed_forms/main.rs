@@ -14,6 +14,7 @@ mod emitter_colour;
 mod interrupted;
 mod lengths;
 mod media;
+mod mistakes;
 mod nephroid;
 mod panel;
 mod photometric_frame;

@@ -1,0 +1,191 @@
+//! What a run did not light: receivers at which nothing arrived, clear bodies and mirrors that no photon met; and
+//! how long its photons were on their way.
+
+use glam::DVec3;
+
+use crate::emitter::Emits;
+use crate::error::warning::{Severity, Warning, four_digits};
+use crate::geometry::{Shape, SurfaceId, Whereabouts};
+use crate::scene::Scene;
+use crate::scene::receiver::{Receiver, ReceiverEvents};
+use crate::surface::Kind;
+
+use super::Outcome;
+
+/// Photons without which nothing is said of what they do not meet.
+const FEWEST: u64 = 1000;
+/// Photons that would have met what is not very small.
+const MANY: u64 = 1 << 16;
+/// Events a photon from which on a run takes long.
+const LONG: f64 = 1000.0;
+/// Points of a receiver that are looked at from the emitters.
+const POINTS: usize = 16;
+/// Emitters that look.
+const MOST_EMITTERS: usize = 16;
+/// Clear faces looked through.
+const MOST_FACES: usize = 64;
+/// Surfaces named.
+const NAMED: usize = 5;
+
+/// What is to be said of it; `is_told` where something was found already that keeps the light away.
+pub(super) fn warnings(scene: &Scene, outcome: &Outcome, is_told: bool) -> Vec<Warning> {
+    let mut all: Vec<Warning> = long_walks(outcome).into_iter().collect();
+    if outcome.photons >= FEWEST {
+        let receivers = scene.receivers.iter().enumerate();
+        all.extend(receivers.filter_map(|(i, receiver)| dark(scene, outcome, is_told, i, receiver)));
+        all.extend(unmet(scene, outcome).filter(|_| !is_told));
+    }
+    all
+}
+
+/// Photons that are reflected very often: the number is right, and takes long.
+fn long_walks(outcome: &Outcome) -> Option<Warning> {
+    let events = events_a_photon(outcome);
+    is_long(outcome).then(|| Warning {
+        severity: Severity::Note,
+        code: "long-walks",
+        message: format!(
+            "a photon is reflected or refracted {} times on average before it ends, so that a run takes long",
+            four_digits(events)
+        ),
+        surfaces: Vec::new(),
+        share: None,
+        remedy: "few real surfaces absorb so little: look at the reflectances; else ask for fewer photons"
+            .into(),
+    })
+}
+
+/// Whether photons are on their way so long that a run takes long.
+pub fn is_long(outcome: &Outcome) -> bool {
+    events_a_photon(outcome) >= LONG
+}
+
+/// Events a photon, on average.
+fn events_a_photon(outcome: &Outcome) -> f64 {
+    outcome.census.exceptions.events as f64 / (outcome.photons as f64).max(1.0)
+}
+
+/// A receiver at which nothing arrived.
+fn dark(scene: &Scene, outcome: &Outcome, is_told: bool, i: usize, receiver: &Receiver) -> Option<Warning> {
+    if outcome.totals().sum[i] > 0 {
+        return None;
+    }
+    let others = outcome.other_events[i];
+    let name = &receiver.name;
+    let (code, message, remedy) = if others > 0 {
+        let lumens = four_digits(others as f64 * outcome.photon_lm);
+        let (asked, arrived, remedy) = match receiver.events {
+            ReceiverEvents::Indirect => (
+                "indirect",
+                "straight from emitters",
+                "say `events = \"all\"` or \"direct\": nothing in the scene sends light on to it",
+            ),
+            ReceiverEvents::Direct | ReceiverEvents::All => (
+                "direct",
+                "after other events",
+                "say `events = \"all\"` or \"indirect\": what has passed glass is not direct, whatever it is bent",
+            ),
+        };
+        let message = format!(
+            "receiver \"{name}\" counts {asked} light alone and got none; {lumens} lm arrived {arrived}"
+        );
+        ("other-events", message, remedy)
+    } else if outcome.turned_away[i] == 0 && !is_told {
+        let photons = outcome.photons;
+        match before(scene, receiver) {
+            Some(surface) => {
+                let surface = &scene.geometry.surfaces()[surface.0 as usize].name;
+                let message = format!(
+                    "nothing arrived at receiver \"{name}\" of {photons} photons: \"{surface}\" stands before it"
+                );
+                (
+                    "nothing-arrives",
+                    message,
+                    "move one of them, or put the receiver on the surface that is met first",
+                )
+            }
+            None => {
+                let message = format!("nothing arrived at receiver \"{name}\" of {photons} photons");
+                (
+                    "nothing-arrives",
+                    message,
+                    "look at where the light goes; a very small one needs more photons",
+                )
+            }
+        }
+    } else {
+        return None;
+    };
+    let surfaces = vec![scene.geometry.surfaces()[receiver.surface.0 as usize].name.clone()];
+    Some(Warning { severity: Severity::Note, code, message, surfaces, share: None, remedy: remedy.into() })
+}
+
+/// What emitters see in the place of a receiver, if it is the same surface as a rule.
+fn before(scene: &Scene, receiver: &Receiver) -> Option<SurfaceId> {
+    let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
+    let faces = shape.face_count();
+    let some = |k: usize| shape.triangle(k * faces / faces.min(POINTS));
+    let points: Vec<DVec3> = match shape {
+        Shape::Sphere(sphere) => vec![sphere.centre()],
+        Shape::Paraboloid(paraboloid) => vec![paraboloid.vertex()],
+        _ => (0..faces.min(POINTS)).filter_map(some).map(|[a, b, c]| (a + b + c) / 3.0).collect(),
+    };
+    let (mut seen, mut looks) = (Vec::<(SurfaceId, usize)>::new(), 0);
+    for (i, emitter) in scene.emitters.as_slice().iter().enumerate().take(MOST_EMITTERS) {
+        let (from, start) = (emitter.position(), scene.start(i));
+        for point in &points {
+            looks += 1;
+            let Some(direction) = (*point - from).try_normalize() else { continue };
+            let Some(surface) = first_opaque(scene, from, direction, start.clone()) else { continue };
+            match seen.iter_mut().find(|(s, _)| *s == surface) {
+                Some((_, count)) => *count += 1,
+                None => seen.push((surface, 1)),
+            }
+        }
+    }
+    let (surface, count) = seen.into_iter().max_by_key(|(_, count)| *count)?;
+    (surface != receiver.surface && 2 * count > looks).then_some(surface)
+}
+
+/// The first surface on a straight line that is not clear.
+fn first_opaque(scene: &Scene, from: DVec3, direction: DVec3, mut at: Whereabouts) -> Option<SurfaceId> {
+    let mut origin = from;
+    for _ in 0..MOST_FACES {
+        let hit = scene.geometry.nearest(origin, direction, &at, &mut 0)?;
+        if !scene.material(hit.surface).is_transparent() {
+            return Some(hit.surface);
+        }
+        scene.media.leave(&mut at, &hit, hit.other_side());
+        origin = hit.position;
+    }
+    None
+}
+
+/// Clear surfaces and mirrors that no photon met.
+fn unmet(scene: &Scene, outcome: &Outcome) -> Option<Warning> {
+    let ids = (0..scene.materials().len() as u32).map(SurfaceId);
+    let specular: Vec<SurfaceId> = ids.filter(|s| scene.material(*s).kind() == Kind::Specular).collect();
+    let is_met = |s: &&SurfaceId| outcome.census.exceptions.may_have_met(**s);
+    let unmet: Vec<SurfaceId> = specular.iter().filter(|s| !is_met(s)).copied().collect();
+    if unmet.is_empty() {
+        return None;
+    }
+    let is_all = unmet.len() == specular.len() && scene.camera.is_none();
+    let surfaces: Vec<String> =
+        unmet.iter().map(|s| scene.geometry.surfaces()[s.0 as usize].name.clone()).collect();
+    let mut names = surfaces.iter().take(NAMED).map(|s| format!("\"{s}\"")).collect::<Vec<_>>().join(", ");
+    if surfaces.len() > NAMED {
+        names += &format!(" and {} more", surfaces.len() - NAMED);
+    }
+    let and = if is_all { ", and there is nothing else that refracts or reflects it" } else { "" };
+    Some(Warning {
+        severity: if is_all && outcome.photons >= MANY { Severity::Doubtful } else { Severity::Note },
+        code: "unlit",
+        message: format!("no light met {names} ({} photons){and}", outcome.photons),
+        surfaces,
+        share: None,
+        remedy: "look at the place of the lamp, and at `translate` and the units of a mesh; what is very small or far away \
+                 needs more photons"
+            .into(),
+    })
+}
