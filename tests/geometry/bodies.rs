@@ -1,6 +1,6 @@
 //! Scenes of many bodies (in one another, in contact, overlapping, of any size and anywhere), walked straight through: a ray that
 //! starts outside ends outside, and meets the faces of each body in turn from without and from within. The example
-//! `watertight` does it with 10^9 rays (docs/TRUST.md).
+//! `watertight` does it with 2 x 10^7 rays (docs/TRUST.md).
 //!
 //! Rays aimed at edges and vertices, along axes and in the planes of faces, meet them to the last bit. Where bodies share edges
 //! or cut one another, rounding at one face can then move a ray past the edge of another: some of those rays are lost, and
