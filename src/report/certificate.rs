@@ -62,7 +62,9 @@ impl CertificateReport {
             more => format!(", {more:.3} points of the sequence"),
         };
         writeln!(out, "file              {}, type {}", self.file, self.photometric_type)?;
-        writeln!(out, "variant           {}: {}", self.variant, self.description)?;
+        // The solver stands in the description.
+        let variant = self.variant.split(':').next().unwrap_or_default();
+        writeln!(out, "variant           {variant}: {}", self.description)?;
         writeln!(out, "samples           {}, seed {}{more}", grouped(certificate.draws), self.seed)?;
         writeln!(out, "table             {table} cells, {zero} {dark}; {pooled} pools")?;
         writeln!(out, "coordinates       {mean:.4} a sample, at most {max}")?;

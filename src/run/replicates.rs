@@ -74,8 +74,13 @@ pub fn trace(
 
 /// Whether the replicates of a run advance together: unless their maps take more than a gibibyte, or the points are
 /// made for their number, so that a first part of them is no sample.
-pub fn together(scene: &Scene, plan: &Plan) -> bool {
-    counters(scene, plan) <= MOST_COUNTERS && !plan.algorithm().sequence.needs_number()
+fn together(scene: &Scene, plan: &Plan) -> bool {
+    are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
+}
+
+/// Whether there is room for the maps of all replicates.
+pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
+    counters(scene, plan) <= MOST_COUNTERS
 }
 
 /// Counters of all replicates.

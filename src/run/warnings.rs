@@ -11,6 +11,7 @@ use crate::transport::mixed::{self, Witness};
 
 use super::Outcome;
 use super::dark;
+use super::replicates::are_kept;
 
 /// The code of light that total reflection keeps.
 pub const TRAPPED: &str = "trapped";
@@ -58,6 +59,7 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     all.extend(run.aimed_away());
     let is_told = all.iter().any(|w| [LAMP_INSIDE, AIMED_AWAY].contains(&w.code));
     all.extend(dark::warnings(scene, outcome, is_told));
+    all.extend(run.in_turn());
     all.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     all
 }
@@ -258,6 +260,23 @@ impl Run<'_> {
                 share: Some(share),
                 remedy: format!("say side = \"{other}\" or \"both\", or turn the surface round"),
             })
+        })
+    }
+
+    /// Replicates that could not advance together. (Those of a picture never do.)
+    fn in_turn(&self) -> Option<Warning> {
+        let plan = &self.outcome.plan;
+        (self.scene.camera.is_none() && !are_kept(self.scene, plan)).then(|| Warning {
+            severity: Severity::Note,
+            code: "replicates-in-turn",
+            message: format!(
+                "the maps of all {} replicates take more than a gibibyte, so these were traced one after another",
+                plan.replicates()
+            ),
+            surfaces: Vec::new(),
+            share: None,
+            remedy: "fewer cells or replicates, if an interrupted run is to have error bars from the first second on"
+                .into(),
         })
     }
 

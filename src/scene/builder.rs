@@ -214,7 +214,10 @@ impl SceneBuilder {
                     starts,
                     emitter_colours,
                 };
-                if let Some((surface, e)) = endless::of_room(&scene) {
+                // Paths of a fixed number of reflections end.
+                if self.compared_reflections.is_none()
+                    && let Some((surface, e)) = endless::of_room(&scene)
+                {
                     return Err(vec![e.placed(places[surface.0 as usize])]);
                 }
                 (scene.clashes, scene.found) = found::look(&scene, &options);

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use caustix::emitter::{Emitter, Isotropic};
 use caustix::error::Kind;
 use caustix::geometry::Rectangle;
-use caustix::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace};
+use caustix::run::{Algorithm, Outcome, Plan, Settings, StoppedBy, trace, warnings};
 use caustix::scene::receiver::ReceiverSpec;
 use caustix::scene::{Scene, SceneBuilder};
 use caustix::sequence::Sequence;
@@ -63,6 +63,30 @@ fn an_interrupt_leaves_all_replicates_as_far_as_they_had_come() {
     let whole = trace(&lamp_over_floor(), &plan, &AtomicBool::new(false), &|_| {}).unwrap();
     assert_eq!((outcome.accounts(), outcome.cells()), (whole.accounts(), whole.cells()));
     assert_eq!((outcome.photon_lm, whole.stopped_by), (whole.photon_lm, StoppedBy::Photons));
+}
+
+#[test]
+fn replicates_whose_maps_are_too_large_together_are_traced_in_turn_and_that_is_told() {
+    // 2^16 replicates of 64 x 64 cells: 2^28 counters.
+    let scene = |cells: u32| {
+        let mut scene = SceneBuilder::new();
+        let floor = Rectangle::new(DVec3::new(-1.0, -1.0, 0.0), DVec3::X * 2.0, DVec3::Y * 2.0).unwrap();
+        let lamp = Emitter::Isotropic(Isotropic::new(DVec3::Z, 1000.0).unwrap());
+        scene.surface("floor", floor.into(), Material::Absorber).emitter("lamp", lamp);
+        scene.receiver(ReceiverSpec::new("floor", "floor").unwrap().with_cells([cells, cells]).unwrap());
+        scene.build().unwrap()
+    };
+    let settings = Settings { photons: Some(1 << 16), replicates: Some(1 << 16), ..Settings::default() };
+    let plan = Plan::new(&settings).unwrap();
+    let traced = |scene: &Scene| trace(scene, &plan, &AtomicBool::new(false), &|_| {}).unwrap();
+    let told =
+        |scene: &Scene, outcome| warnings(scene, outcome).iter().any(|w| w.code == "replicates-in-turn");
+    let (few, many) = (scene(1), scene(64));
+    let (together, in_turn) = (traced(&few), traced(&many));
+    assert_eq!((told(&few, &together), told(&many, &in_turn)), (false, true));
+    // The same photons both ways.
+    assert_eq!((together.accounts(), together.totals()), (in_turn.accounts(), in_turn.totals()));
+    assert_eq!(in_turn.cells()[0].sum.iter().sum::<u64>(), together.cells()[0].sum[0]);
 }
 
 #[test]

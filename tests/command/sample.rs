@@ -66,7 +66,7 @@ fn json_has_every_number_of_the_certificate() {
     assert_eq!(report["seed"], 7);
     assert_eq!(
         (&report["variant"], &report["sequence"]),
-        (&"qmc-inverse-reuse".into(), &"sobol-owen".into())
+        (&"qmc-inverse-reuse:quadratic-newton".into(), &"sobol-owen".into())
     );
     assert_eq!(report["points"], "low-discrepancy");
     assert_eq!((&report["coordinates"]["mean"], &report["coordinates"]["max"]), (&2.0.into(), &2.into()));
@@ -101,7 +101,10 @@ fn json_has_every_number_of_the_certificate() {
 fn the_table_says_what_was_tested_and_how() {
     for (words, says) in [
         (vec!["--variant", "qmc:next-point"], ["points of the sequence", "an upper bound", "cell means"]),
-        (vec!["--sequence", "sobol"], ["sobol; inverse functions", "an upper bound", "discrepancy"]),
+        (
+            vec!["--sequence", "sobol"],
+            ["sobol; inverse functions (quadratic-newton)", "an upper bound", "discrepancy"],
+        ),
         (vec!["--variant", "mc"], ["rejection inside the cell", "p-values hold", "KS phi | theta"]),
     ] {
         let file = own("wavy_glass.ies");
