@@ -15,7 +15,7 @@ use caustix::{Emitter, Isotropic};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::meshes::{Random, icosphere, slab};
+use super::meshes::{Random, Tally, icosphere, slab};
 
 /// Bodies, and what rays are aimed at.
 pub struct Case {
@@ -35,35 +35,6 @@ pub enum Aim {
     Anywhere,
     /// Through vertices and edges, along axes, in the planes of faces.
     Edges,
-}
-
-/// What rays met.
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
-pub struct Tally {
-    pub rays: u64,
-    pub crossings: u64,
-    /// Left the scene while in a body.
-    pub leaks: u64,
-    /// Met a face from the side on which the ray was not.
-    pub doubles: u64,
-    /// More crossings than there are faces to cross.
-    pub endless: u64,
-}
-
-impl Tally {
-    fn plus(self, o: Self) -> Self {
-        Self {
-            rays: self.rays + o.rays,
-            crossings: self.crossings + o.crossings,
-            leaks: self.leaks + o.leaks,
-            doubles: self.doubles + o.doubles,
-            endless: self.endless + o.endless,
-        }
-    }
-
-    pub fn faults(self) -> u64 {
-        self.leaks + self.doubles + self.endless
-    }
 }
 
 /// More than any straight line crosses in these scenes.
@@ -140,7 +111,7 @@ impl Case {
         let Scene { geometry, media, .. } = &self.scene;
         let mut within = vec![0i32; geometry.surfaces().len()];
         let mut tally = Tally { rays: 1, ..Tally::default() };
-        while let Some(hit) = geometry.nearest(origin, direction, &at, &mut 0) {
+        while let Some(hit) = geometry.nearest(origin, direction, &at, &mut tally.skipped) {
             tally.crossings += 1;
             if tally.crossings > MOST_CROSSINGS {
                 return Tally { endless: 1, ..tally };

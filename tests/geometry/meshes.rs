@@ -42,6 +42,37 @@ impl Random {
     }
 }
 
+/// What rays met that went straight through closed surfaces.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+pub struct Tally {
+    pub rays: u64,
+    pub crossings: u64,
+    /// Left the scene while behind a surface.
+    pub leaks: u64,
+    /// Met a face from the side on which the ray was not.
+    pub doubles: u64,
+    /// More crossings than a straight line can have.
+    pub endless: u64,
+    pub skipped: u64,
+}
+
+impl Tally {
+    pub fn plus(self, o: Self) -> Self {
+        Self {
+            rays: self.rays + o.rays,
+            crossings: self.crossings + o.crossings,
+            leaks: self.leaks + o.leaks,
+            doubles: self.doubles + o.doubles,
+            endless: self.endless + o.endless,
+            skipped: self.skipped + o.skipped,
+        }
+    }
+
+    pub fn faults(self) -> u64 {
+        self.leaks + self.doubles + self.endless
+    }
+}
+
 pub fn named(name: &str, shape: Shape) -> Surface {
     Surface { name: name.into(), shape }
 }

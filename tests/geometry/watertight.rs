@@ -8,7 +8,7 @@ use caustix::geometry::{
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::meshes::{Random, icosphere, named, slab};
+use crate::meshes::{Random, Tally, icosphere, named, slab};
 
 /// One closed mesh and where to aim.
 struct Target {
@@ -31,32 +31,6 @@ impl Target {
             1 => (a + b) * 0.5,
             2 | 3 => a + (b - a) * r.unit(),
             _ => a + (b - a) * (r.unit() * 0.5) + (c - a) * (r.unit() * 0.5),
-        }
-    }
-}
-
-#[derive(Debug, Default, Clone, Copy, PartialEq)]
-struct Tally {
-    rays: u64,
-    crossings: u64,
-    /// Left the scene while behind the mesh.
-    leaks: u64,
-    /// Two successive crossings of equal orientation.
-    doubles: u64,
-    /// More crossings than a straight line can have.
-    endless: u64,
-    skipped: u64,
-}
-
-impl Tally {
-    fn plus(self, o: Self) -> Self {
-        Self {
-            rays: self.rays + o.rays,
-            crossings: self.crossings + o.crossings,
-            leaks: self.leaks + o.leaks,
-            doubles: self.doubles + o.doubles,
-            endless: self.endless + o.endless,
-            skipped: self.skipped + o.skipped,
         }
     }
 }
@@ -95,7 +69,7 @@ fn run(
             let mut r = Random::new(seed, i);
             let (origin, direction, inside) = ray(&mut r, target);
             let tally = walk(&target.geometry, origin, direction, inside);
-            if tally.leaks + tally.doubles + tally.endless > 0 && shown.fetch_add(1, Ordering::Relaxed) < 5 {
+            if tally.faults() > 0 && shown.fetch_add(1, Ordering::Relaxed) < 5 {
                 println!("ray {i} of seed {seed}: {origin:?} {direction:?} inside {inside}: {tally:?}");
             }
             tally
