@@ -76,9 +76,8 @@ fn first_stage(plan: &Plan) -> u64 {
 /// is: each end is that of a net of 2^m points, and an interrupted run falls back on the last. Later
 /// replicates count only as a whole.
 fn stages(plan: &Plan, replicate: u32) -> Vec<u64> {
-    let n = plan.photons_per_replicate();
-    let first = if replicate == 0 { first_stage(plan) } else { n };
-    std::iter::successors(Some(first), |end| (*end < n).then(|| n.min(2 * end))).collect()
+    let first = if replicate == 0 { first_stage(plan) } else { plan.photons_per_replicate() };
+    plan.doublings(first).collect()
 }
 
 #[cfg(test)]

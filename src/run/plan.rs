@@ -80,6 +80,12 @@ impl Plan {
         self.photons_per_replicate
     }
 
+    /// The numbers of photons at which a replicate pauses: `first`, then each twice the one before, to n.
+    pub(super) fn doublings(&self, first: u64) -> impl Iterator<Item = u64> + use<> {
+        let n = self.photons_per_replicate;
+        std::iter::successors(Some(n.min(first)), move |end| (*end < n).then(|| n.min(2 * end)))
+    }
+
     /// Replicates, R.
     pub fn replicates(&self) -> u32 {
         self.replicates

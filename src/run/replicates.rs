@@ -117,9 +117,8 @@ impl<'s> Replica<'s> {
 /// net of 2^m points, while within a stage the order follows the first coordinate, so that a part of it would be a part
 /// of the emitter's directions, not a sample of them.
 fn stages(plan: &Plan) -> Vec<u64> {
-    let n = plan.photons_per_replicate();
     let share = FIRST_STAGE.div_ceil(u64::from(plan.replicates())).next_power_of_two().max(32);
-    std::iter::successors(Some(n.min(share)), |end| (*end < n).then(|| n.min(2 * end))).collect()
+    plan.doublings(share).collect()
 }
 
 #[cfg(test)]
