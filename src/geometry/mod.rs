@@ -240,6 +240,11 @@ impl Geometry {
         })
     }
 
+    /// The name of a surface.
+    pub fn name(&self, surface: SurfaceId) -> &str {
+        &self.surfaces[surface.0 as usize].name
+    }
+
     /// The surfaces, by [`SurfaceId`].
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces

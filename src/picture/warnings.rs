@@ -3,11 +3,11 @@
 use std::sync::atomic::AtomicBool;
 
 use crate::error::Result;
-use crate::error::warning::{Severity, Warning};
+use crate::error::warning::Warning;
 use crate::geometry::SurfaceId;
 use crate::picture::camera::render::{Rendered, render};
 use crate::picture::camera::{Pass, Sums, View};
-use crate::run::warnings::{percent, remedy_of_contradiction};
+use crate::run::warnings::{contradiction, percent};
 use crate::scene::Scene;
 use crate::scene::camera::{Camera, CameraSpec};
 
@@ -16,19 +16,13 @@ use super::PictureSummary;
 /// The warnings of a picture.
 pub fn warnings(scene: &Scene, summary: &PictureSummary) -> Vec<Warning> {
     let of = |(&surface, &count): (&SurfaceId, &u64)| {
-        let name = scene.geometry.surfaces()[surface.0 as usize].name.clone();
-        let share = count as f64 / (summary.eye_paths as f64).max(1.0);
-        Warning {
-            severity: Severity::Untrusted,
-            code: "contradicted-medium",
-            message: format!(
-                "{} of all eye paths reached surface \"{name}\" in another medium than the scene says is there",
-                percent(share)
-            ),
-            surfaces: vec![name],
-            share: Some(share),
-            remedy: remedy_of_contradiction(scene, surface).into(),
-        }
+        let (name, share) =
+            (scene.geometry.name(surface), count as f64 / (summary.eye_paths as f64).max(1.0));
+        let message = format!(
+            "{} of all eye paths reached surface \"{name}\" in another medium than the scene says is there",
+            percent(share)
+        );
+        contradiction(scene, surface, share, message)
     };
     summary.eye_paths_contradicted.iter().map(of).collect()
 }

@@ -23,7 +23,7 @@ pub fn attributes(
     text("caustix.unit.standard_error", "lx");
     text("caustix.unit.hits", "photons");
     text("caustix.receiver", &receiver.name);
-    text("caustix.surface", &scene.geometry.surfaces()[receiver.surface.0 as usize].name);
+    text("caustix.surface", scene.geometry.name(receiver.surface));
     let side = match receiver.side {
         ReceiverSide::Front => "front",
         ReceiverSide::Back => "back",

@@ -222,7 +222,7 @@ impl<'a> Report<'a> {
             let absorbed = |i| of(outcome.absorbed_lm(i));
             Accounts::new(scene, absorbed, of(outcome.escaped_lm()), of(outcome.killed_lm()))
         };
-        let name = |body: &SurfaceId| scene.geometry.surfaces()[body.0 as usize].name.clone();
+        let name = |body: &SurfaceId| scene.geometry.name(*body).to_owned();
         let trapped: BTreeMap<_, _> = ledger.trapped.iter().map(|(body, n)| (name(body), *n)).collect();
         let trapped_lm =
             trapped.iter().map(|(n, count)| (n.clone(), *count as f64 * outcome.photon_lm)).collect();
@@ -231,9 +231,11 @@ impl<'a> Report<'a> {
         let warnings: Vec<Warning> =
             warnings(scene, outcome).into_iter().chain(of_scene(&scene.warnings)).collect();
         let untrusted = |receiver: &Receiver| {
-            let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize].name;
+            let surface = scene.geometry.name(receiver.surface);
             let spoils = |w: &&Warning| {
-                w.code == TRAPPED && w.severity == Severity::Untrusted && w.surfaces.contains(surface)
+                w.code == TRAPPED
+                    && w.severity == Severity::Untrusted
+                    && w.surfaces.iter().any(|s| s == surface)
             };
             warnings.iter().filter(spoils).map(|w| w.code).collect()
         };

@@ -94,7 +94,7 @@ fn dark(scene: &Scene, outcome: &Outcome, is_told: bool, i: usize, receiver: &Re
         let photons = outcome.photons;
         match before(scene, receiver) {
             Some(surface) => {
-                let surface = &scene.geometry.surfaces()[surface.0 as usize].name;
+                let surface = scene.geometry.name(surface);
                 let message = format!(
                     "nothing arrived at receiver \"{name}\" of {photons} photons: \"{surface}\" stands before it"
                 );
@@ -116,7 +116,7 @@ fn dark(scene: &Scene, outcome: &Outcome, is_told: bool, i: usize, receiver: &Re
     } else {
         return None;
     };
-    let surfaces = vec![scene.geometry.surfaces()[receiver.surface.0 as usize].name.clone()];
+    let surfaces = vec![scene.geometry.name(receiver.surface).to_owned()];
     Some(Warning { severity: Severity::Note, code, message, surfaces, share: None, remedy: remedy.into() })
 }
 
@@ -171,8 +171,7 @@ fn unmet(scene: &Scene, outcome: &Outcome) -> Option<Warning> {
         return None;
     }
     let is_all = unmet.len() == specular.len() && scene.camera.is_none();
-    let surfaces: Vec<String> =
-        unmet.iter().map(|s| scene.geometry.surfaces()[s.0 as usize].name.clone()).collect();
+    let surfaces: Vec<String> = unmet.iter().map(|s| scene.geometry.name(*s).to_owned()).collect();
     let mut names = surfaces.iter().take(NAMED).map(|s| format!("\"{s}\"")).collect::<Vec<_>>().join(", ");
     if surfaces.len() > NAMED {
         names += &format!(" and {} more", surfaces.len() - NAMED);

@@ -64,8 +64,19 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     all
 }
 
-/// What to do about a surface that is reached in another medium than it states.
-pub fn remedy_of_contradiction(scene: &Scene, surface: SurfaceId) -> &'static str {
+/// The warning of a surface that a share of all photons or eye paths reach in another medium than it states.
+pub fn contradiction(scene: &Scene, surface: SurfaceId, share: f64, message: String) -> Warning {
+    Warning {
+        severity: Severity::Untrusted,
+        code: "contradicted-medium",
+        message,
+        surfaces: vec![scene.geometry.name(surface).to_owned()],
+        share: Some(share),
+        remedy: remedy_of_contradiction(scene, surface).into(),
+    }
+}
+
+fn remedy_of_contradiction(scene: &Scene, surface: SurfaceId) -> &'static str {
     let is_turned = |clash: &&Clash| clash.same_way && clash.surfaces.contains(&surface);
     if let Some(clash) = scene.clashes.iter().find(is_turned) {
         clash.remedy()
@@ -85,23 +96,17 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn name(&self, surface: SurfaceId) -> String {
-        self.scene.geometry.surfaces()[surface.0 as usize].name.clone()
+        self.scene.geometry.name(surface).to_owned()
     }
 
     fn contradicted(&self) -> impl Iterator<Item = Warning> {
         self.outcome.census.exceptions.contradicted.iter().map(|(&surface, &count)| {
             let (name, share) = (self.name(surface), count as f64 / self.photons);
-            Warning {
-                severity: Severity::Untrusted,
-                code: "contradicted-medium",
-                message: format!(
-                    "light reached surface \"{name}\" in another medium than the scene says is there, {} times a photon",
-                    times(share)
-                ),
-                surfaces: vec![name],
-                share: Some(share),
-                remedy: remedy_of_contradiction(self.scene, surface).into(),
-            }
+            let message = format!(
+                "light reached surface \"{name}\" in another medium than the scene says is there, {} times a photon",
+                times(share)
+            );
+            contradiction(self.scene, surface, share, message)
         })
     }
 

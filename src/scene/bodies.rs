@@ -31,17 +31,13 @@ pub(super) fn warnings(scene: &Scene, options: &[SurfaceOptions]) -> Vec<Warning
     all
 }
 
-fn name(scene: &Scene, surface: SurfaceId) -> String {
-    scene.geometry.surfaces()[surface.0 as usize].name.clone()
-}
-
 /// An index below 1: no clear matter has one.
 fn relative_index(scene: &Scene, surface: SurfaceId) -> Option<Warning> {
     let (ior, _) = scene.material(surface).indices()?;
     if ior >= 1.0 {
         return None;
     }
-    let name = name(scene, surface);
+    let name = scene.geometry.name(surface).to_owned();
     Some(Warning {
         severity: Severity::Note,
         code: "index-below-one",
@@ -107,7 +103,7 @@ fn nested_in_the_same(scene: &Scene, body: SurfaceId) -> Option<Warning> {
     if around.iter().any(|(_, m, _)| *m != medium) {
         return None;
     }
-    let (inner, outer) = (name(scene, body), name(scene, outer));
+    let (inner, outer) = (scene.geometry.name(body).to_owned(), scene.geometry.name(outer).to_owned());
     Some(Warning {
         severity: Severity::Note,
         code: "same-medium",
@@ -124,7 +120,7 @@ fn nested_in_the_same(scene: &Scene, body: SurfaceId) -> Option<Warning> {
 /// A part of a mesh in another part of it, wound alike.
 fn nested_part(scene: &Scene, surface: SurfaceId) -> Option<Warning> {
     scene.geometry.has_nested_part(surface).then(|| {
-        let name = name(scene, surface);
+        let name = scene.geometry.name(surface).to_owned();
         Warning {
             severity: Severity::Note,
             code: "same-medium",
@@ -147,7 +143,7 @@ fn doubled_faces(scene: &Scene, surface: SurfaceId) -> Option<Warning> {
         return None;
     }
     let count = both_ways(mesh);
-    let name = name(scene, surface);
+    let name = scene.geometry.name(surface).to_owned();
     (count > 0).then(|| Warning {
         severity: Severity::Doubtful,
         code: "doubled-faces",
@@ -181,7 +177,7 @@ fn cut(scene: &Scene, body: SurfaceId, solid: SurfaceId) -> Option<Warning> {
     if geometry.nearly().iter().any(|near| is_pair(&near.surfaces)) || !geometry.is_cut_by(body, solid) {
         return None;
     }
-    let [body, solid] = [body, solid].map(|s| name(scene, s));
+    let [body, solid] = [body, solid].map(|s| scene.geometry.name(s).to_owned());
     Some(Warning {
         severity: Severity::Note,
         code: "cut-body",
@@ -207,7 +203,7 @@ fn glued_to_nothing(scene: &Scene, options: &[SurfaceOptions], surface: SurfaceI
     {
         return None;
     }
-    let name = name(scene, surface);
+    let name = scene.geometry.name(surface).to_owned();
     Some(Warning {
         severity: Severity::Doubtful,
         code: "glued-to-nothing",

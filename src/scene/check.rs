@@ -14,7 +14,7 @@ use super::figure::{Contact, Figure};
 pub fn start(name: &str, emitter: &Emitter, geometry: &Geometry) -> Result<Whereabouts> {
     let centre = emitter.position();
     let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
-    let label = |surface: SurfaceId| &geometry.surfaces()[surface.0 as usize].name;
+    let label = |surface: SurfaceId| geometry.name(surface);
     let figure = Figure::new(emitter);
     let on = || geometry.surface_at(centre).or_else(|| figure.as_ref()?.met(geometry, Contact::Flush));
     if let Some(surface) = (!emitter.kind().may_touch).then(on).flatten() {

@@ -18,7 +18,7 @@ pub(super) fn errors(
 ) -> Vec<Finding> {
     let at = |s: SurfaceId| s.0 as usize;
     let is_body = |s: SurfaceId| geometry.is_closed(s) && materials[at(s)].is_transparent();
-    let name = |s: SurfaceId| &geometry.surfaces()[at(s)].name;
+    let name = |s: SurfaceId| geometry.name(s);
     let volume = |s: SurfaceId| geometry.surfaces()[at(s)].shape.volume_m3();
     let mut found = Vec::new();
     let mut refused: Vec<[SurfaceId; 2]> = Vec::new();
@@ -78,7 +78,7 @@ pub(super) fn warnings(
     options: &[SurfaceOptions],
 ) -> Vec<Finding> {
     let at = |s: SurfaceId| s.0 as usize;
-    let name = |s: SurfaceId| &geometry.surfaces()[at(s)].name;
+    let name = |s: SurfaceId| geometry.name(s);
     let pairs = geometry.contacts().iter().filter(|contact| {
         let [a, b] = contact.surfaces;
         let is_clear = |s: SurfaceId| materials[at(s)].is_transparent();

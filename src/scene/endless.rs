@@ -41,7 +41,7 @@ pub(super) fn of_room(scene: &Scene) -> Option<(SurfaceId, Diagnostic)> {
             return None;
         }
     }
-    let name = |s: &SurfaceId| format!("\"{}\"", scene.geometry.surfaces()[s.0 as usize].name);
+    let name = |s: &SurfaceId| format!("\"{}\"", scene.geometry.name(*s));
     let mut names = walls.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
     if walls.len() > NAMED {
         names += &format!(" or one of {} more", walls.len() - NAMED);

@@ -28,10 +28,6 @@ pub(super) fn look(scene: &Scene, options: &[SurfaceOptions]) -> (Vec<Clash>, Ve
     )
 }
 
-fn name(scene: &Scene, surface: SurfaceId) -> String {
-    scene.geometry.surfaces()[surface.0 as usize].name.clone()
-}
-
 /// Faces that all but touch: what was said of their contact is not heard. Of two opaque surfaces it does not matter.
 fn nearly(scene: &Scene, options: &[SurfaceOptions], near: &Near) -> Option<Warning> {
     let is_clear = |s: SurfaceId| scene.material(s).is_transparent();
@@ -39,7 +35,7 @@ fn nearly(scene: &Scene, options: &[SurfaceOptions], near: &Near) -> Option<Warn
         return None;
     }
     let is_glued = near.surfaces.iter().any(|s| options[s.0 as usize].contact == Some(Joint::Glued));
-    let surfaces = near.surfaces.map(|s| name(scene, s));
+    let surfaces = near.surfaces.map(|s| scene.geometry.name(s).to_owned());
     let [a, b] = &surfaces;
     let (distance, is_sunk) = (near.distance_m.abs(), near.distance_m < 0.0);
     let how = match (is_sunk, is_glued) {
@@ -67,7 +63,8 @@ fn cracked(scene: &Scene, surface: SurfaceId) -> Option<Warning> {
         return None;
     }
     let (_, [from, to]) = topology.first_open_edge?;
-    let (name, is_clear) = (name(scene, surface), scene.material(surface).is_transparent());
+    let (name, is_clear) =
+        (scene.geometry.name(surface).to_owned(), scene.material(surface).is_transparent());
     let taken = if is_clear { ", so it bounds no body: it is taken for an open surface" } else { "" };
     Some(Warning {
         severity: if is_clear { Severity::Doubtful } else { Severity::Note },

@@ -32,10 +32,6 @@ pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     all
 }
 
-fn name(scene: &Scene, surface: SurfaceId) -> String {
-    scene.geometry.surfaces()[surface.0 as usize].name.clone()
-}
-
 /// Surely no light gets through. (A table may send some.)
 fn is_opaque(material: &Material) -> bool {
     matches!(material, Material::Lambertian(_) | Material::Mirror(_) | Material::Absorber)
@@ -58,7 +54,7 @@ fn lamps_in(scene: &Scene, wall: SurfaceId) -> Option<Warning> {
     if lamps.is_empty() || is_watched || measures_within(scene, wall) {
         return None;
     }
-    let name = name(scene, wall);
+    let name = scene.geometry.name(wall).to_owned();
     Some(Warning {
         severity: Severity::Doubtful,
         code: LAMP_INSIDE,
@@ -104,7 +100,7 @@ fn camera_in(scene: &Scene, wall: SurfaceId) -> Option<Warning> {
     if !is_inside(&scene.geometry, wall, camera.position) || lamps(scene, wall).next().is_some() {
         return None;
     }
-    let name = name(scene, wall);
+    let name = scene.geometry.name(wall).to_owned();
     Some(Warning {
         severity: Severity::Doubtful,
         code: "camera-inside",
@@ -131,7 +127,7 @@ fn all_in(scene: &Scene, body: SurfaceId) -> Option<Warning> {
     if within.is_empty() {
         return None;
     }
-    let name = name(scene, body);
+    let name = scene.geometry.name(body).to_owned();
     let ior = scene.material(body).indices().map_or(1.0, |(ior, _)| ior);
     Some(Warning {
         severity: Severity::Note,

@@ -41,7 +41,7 @@ fn too_near(scene: &Scene, lamp: usize, far_m: f64) -> Option<Warning> {
     let near: Vec<_> = met.filter(|hit| hit.t < far_m).collect();
     let share = near.len() as f64 / rays as f64;
     let nearest = near.iter().min_by(|a, b| a.t.total_cmp(&b.t)).filter(|_| share >= SHARE)?;
-    let surface = scene.geometry.surfaces()[nearest.surface.0 as usize].name.clone();
+    let surface = scene.geometry.name(nearest.surface).to_owned();
     let name = &scene.emitter_names[lamp];
     Some(Warning {
         severity: Severity::Doubtful,

@@ -148,7 +148,7 @@ impl Clash {
     }
 
     fn warning(&self, scene: &Scene) -> Warning {
-        let surfaces = self.surfaces.map(|s| scene.geometry.surfaces()[s.0 as usize].name.clone());
+        let surfaces = self.surfaces.map(|s| scene.geometry.name(s).to_owned());
         let ([a, b], [first, second]) = (&surfaces, self.between.map(|m| scene.media.ior(m)));
         Warning {
             severity: Severity::Doubtful,
@@ -165,7 +165,7 @@ impl Clash {
 }
 
 fn one_sheet(scene: &Scene, surface: SurfaceId, behind: MediumId) -> Warning {
-    let name = scene.geometry.surfaces()[surface.0 as usize].name.clone();
+    let name = scene.geometry.name(surface).to_owned();
     Warning {
         severity: Severity::Doubtful,
         code: "one-sheet",

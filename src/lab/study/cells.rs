@@ -51,7 +51,7 @@ impl<'s> Grids<'s> {
             return fail("no grids", "at least one number of cells a side");
         }
         let divide = |(k, receiver): (u32, &Receiver)| {
-            let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize].name;
+            let surface = scene.geometry.name(receiver.surface);
             let spec = ReceiverSpec::new(&receiver.name, surface)?.with_cells([k, k])?;
             Receiver::new(&spec.on_side(receiver.side).of_events(receiver.events), &scene.geometry)
         };

@@ -37,7 +37,7 @@ impl<'s> View<'s> {
         let geometry = &scene.geometry;
         let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Geometry, found, required));
         if let Some(surface) = geometry.surface_at(camera.position) {
-            let name = &geometry.surfaces()[surface.0 as usize].name;
+            let name = geometry.name(surface);
             return fail(
                 format!("the camera on surface \"{name}\""),
                 "a camera off every surface: on one, it is on neither side",
