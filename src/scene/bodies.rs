@@ -20,7 +20,9 @@ pub(super) fn warnings(scene: &Scene, options: &[SurfaceOptions]) -> Vec<Warning
     let is_body = |s: &SurfaceId| matches!(scene.media.role(*s), Role::Body { .. });
     let clear = || ids().filter(|s| scene.material(*s).is_transparent());
     let mut all: Vec<Warning> = clear().filter_map(|s| relative_index(scene, s)).collect();
-    all.extend(ids().filter(is_body).filter_map(|s| nested_in_the_same(scene, s)));
+    // Of all their faces, so once.
+    let bounds: Vec<_> = scene.geometry.surfaces().iter().map(|s| s.shape.bounds()).collect();
+    all.extend(ids().filter(is_body).filter_map(|s| nested_in_the_same(scene, &bounds, s)));
     all.extend(ids().filter(is_body).filter_map(|s| nested_part(scene, s)));
     all.extend(clear().filter_map(|s| doubled_faces(scene, s)));
     all.extend(ids().filter(is_body).flat_map(|body| {
@@ -70,15 +72,15 @@ fn points(shape: &Shape) -> Vec<DVec3> {
 }
 
 /// A body that is all in others, of which the one that fills its place has the same index.
-fn nested_in_the_same(scene: &Scene, body: SurfaceId) -> Option<Warning> {
+fn nested_in_the_same(scene: &Scene, bounds: &[(DVec3, DVec3)], body: SurfaceId) -> Option<Warning> {
     let geometry = &scene.geometry;
     let Role::Body { medium, .. } = scene.media.role(body) else { return None };
     let surfaces = geometry.surfaces();
-    let (low, high) = surfaces[body.0 as usize].shape.bounds();
+    let (low, high) = bounds[body.0 as usize];
     let others: Vec<SurfaceId> = (0..surfaces.len() as u32)
         .map(SurfaceId)
         .filter(|s| {
-            let (l, h) = surfaces[s.0 as usize].shape.bounds();
+            let (l, h) = bounds[s.0 as usize];
             *s != body
                 && matches!(scene.media.role(*s), Role::Body { .. })
                 && l.cmple(low).all()
