@@ -29,7 +29,8 @@ const PHOTONS_PER_COUNTER: f64 = 0.125;
 /// told numbers of photons as they are done.
 ///
 /// All replicates advance together, doubling what there is, so that an interrupted run has error bars. They are traced
-/// one after another where [`together`] says no.
+/// one after another where the maps of all replicates take more than a gibibyte, or where the points are made for their
+/// number.
 ///
 /// # Errors
 /// Interrupted before there was a result; a ledger that does not balance (a defect of the program, never of the data).
