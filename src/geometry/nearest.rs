@@ -5,22 +5,22 @@ use glam::DVec3;
 use super::ray::Ray;
 use super::skipped::Skipped;
 use super::sphere::Root;
-use super::triangle::{Block, Crossing, View, coordinate_error};
+use super::triangle::{Block, Crossing, Lanes, View, coordinate_error};
 use super::whereabouts::Verdict;
 use super::wide::{BoxRay, Visitor};
 use super::{Geometry, Hit, Info, Shape, SurfaceId, Whereabouts};
 
 /// A candidate that is nearest so far.
 #[derive(Debug, Clone, Copy)]
-struct Best {
+struct Best<'a> {
     t: f64,
     rank: u32,
     primitive: u32,
     surface: u32,
     crossing: Crossing,
-    /// The triangle, kept from the leaf: fetching it again from the mesh would miss the cache.
-    corners: [[f64; 3]; 3],
     view: View,
+    /// Where the triangle is: fetching it from the mesh would miss the cache.
+    place: (&'a Block, usize),
 }
 
 /// A search along one ray. `LENIENT`: only the far sides of closed surfaces the photon is behind, edges widened by
@@ -31,7 +31,7 @@ struct Search<'a, const LENIENT: bool> {
     boxes: &'a BoxRay,
     at: &'a Whereabouts,
     only: Option<SurfaceId>,
-    best: Option<Best>,
+    best: Option<Best<'a>>,
     nearest_t: f64,
     limit: f32,
     skipped: Skipped,
@@ -63,7 +63,7 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
     fn consider(
         &mut self,
         (primitive, surface): (u32, u32),
-        (corners, view): (&[[f64; 3]; 3], &View),
+        (view, place): (&View, (&'a Block, usize)),
         crossing: Crossing,
         bound: impl FnOnce() -> f64,
     ) {
@@ -92,27 +92,18 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             None => true,
         };
         if first {
-            self.best = Some(Best {
-                t,
-                rank: info.rank,
-                primitive,
-                surface,
-                crossing,
-                corners: *corners,
-                view: *view,
-            });
+            self.best = Some(Best { t, rank: info.rank, primitive, surface, crossing, view: *view, place });
             self.nearest_t = t;
             self.limit = self.boxes.limit(t);
         }
     }
 
     #[inline(always)]
-    fn triangle(&mut self, block: &Block, lane: usize) {
+    fn triangle(&mut self, (block, lane): (&'a Block, usize), lanes: &Lanes) {
         let (primitive, surface) = (block.primitive[lane], block.surface[lane]);
-        let corners = block.triangle(lane);
-        let view = View::new(&corners, self.ray);
+        let view = lanes.view(lane, self.ray);
         if LENIENT {
-            self.lenient_triangle(&corners, &view, primitive, surface);
+            self.lenient_triangle((block, lane), &view);
             return;
         }
         let Some(crossing) = view.crossing() else { return };
@@ -120,24 +111,26 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
             return;
         }
         let ray = self.ray;
-        self.consider((primitive, surface), (&corners, &view), crossing, || {
-            view.bound(ray, coordinate_error(&corners, ray))
+        self.consider((primitive, surface), (&view, (block, lane)), crossing, || {
+            view.bound(ray, coordinate_error(&block.triangle(lane), ray))
         });
     }
 
     #[cold]
-    fn lenient_triangle(&mut self, corners: &[[f64; 3]; 3], view: &View, primitive: u32, surface: u32) {
-        let error = coordinate_error(corners, self.ray);
+    fn lenient_triangle(&mut self, (block, lane): (&'a Block, usize), view: &View) {
+        let (primitive, surface) = (block.primitive[lane], block.surface[lane]);
+        let error = coordinate_error(&block.triangle(lane), self.ray);
         let Some(crossing) = view.lenient_crossing(error) else { return };
         if crossing.front || self.at.has_met(primitive) {
             return;
         }
         let ray = self.ray;
-        self.consider((primitive, surface), (corners, view), crossing, || view.bound(ray, error));
+        self.consider((primitive, surface), (view, (block, lane)), crossing, || view.bound(ray, error));
     }
 
     #[inline(never)]
-    fn analytic(&mut self, primitive: u32, surface: u32) {
+    fn analytic(&mut self, (block, lane): (&'a Block, usize)) {
+        let (primitive, surface) = (block.primitive[lane], block.surface[lane]);
         let on = self.at.has_met(primitive);
         let none = [None, None];
         let roots: [Option<Root>; 2] = match &self.geometry.surfaces[surface as usize].shape {
@@ -148,14 +141,15 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
         };
         for root in roots.into_iter().flatten() {
             let crossing = Crossing { t: root.t, weights: [0.0; 2], front: root.front };
-            self.consider((primitive, surface), (&[[0.0; 3]; 3], &View::NONE), crossing, || root.bound);
+            self.consider((primitive, surface), (&View::NONE, (block, lane)), crossing, || root.bound);
         }
     }
 
     /// All primitives of a block that the ray may meet.
     #[inline(always)]
-    fn block(&mut self, block: &Block) {
-        let mut mask = if LENIENT { (1 << block.count) - 1 } else { block.candidates(self.ray) };
+    fn block(&mut self, block: &'a Block) {
+        let (lanes, not_missed) = block.candidates(self.ray);
+        let mut mask = if LENIENT { (1 << block.count) - 1 } else { not_missed };
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize & 3;
             mask &= mask - 1;
@@ -164,17 +158,17 @@ impl<'a, const LENIENT: bool> Search<'a, LENIENT> {
                 continue;
             }
             if block.analytic >> lane & 1 == 1 {
-                self.analytic(block.primitive[lane], surface.0);
+                self.analytic((block, lane));
             } else {
-                self.triangle(block, lane);
+                self.triangle((block, lane), &lanes);
             }
         }
     }
 }
 
-impl<const LENIENT: bool> Visitor for Search<'_, LENIENT> {
+impl<'a, const LENIENT: bool> Visitor<'a> for Search<'a, LENIENT> {
     #[inline(always)]
-    fn leaf(&mut self, block: &Block) {
+    fn leaf(&mut self, block: &'a Block) {
         self.block(block);
     }
 
@@ -187,9 +181,9 @@ impl<const LENIENT: bool> Visitor for Search<'_, LENIENT> {
 /// A search that ends at the first surface it finds.
 struct Blocked<'a>(Search<'a, false>);
 
-impl Visitor for Blocked<'_> {
+impl<'a> Visitor<'a> for Blocked<'a> {
     #[inline(always)]
-    fn leaf(&mut self, block: &Block) {
+    fn leaf(&mut self, block: &'a Block) {
         self.0.block(block);
         if self.0.best.is_some() {
             // No box begins before it: the walk is over.
@@ -275,64 +269,62 @@ impl Geometry {
         let mut search = Search::<false>::new(self, rays, at, None);
         self.run(&mut search, tree);
         *skipped += search.skipped.before(search.nearest_t);
-        let mut best = search.best;
-        if at.is_behind_any() {
-            best = self.not_through_the_rim(best, rays, at, skipped, tree);
+        // References: to move what was found costs more than to look for a rim.
+        let rim =
+            if at.is_behind_any() { self.rim(search.best.as_ref(), rays, at, skipped, tree) } else { None };
+        let best = rim.as_ref().or(search.best.as_ref())?;
+        let (block, lane) = best.place;
+        let hit = self.finish(best, &block.triangle(lane), &ray);
+        if self.info[best.surface as usize].touches {
+            return Some(self.in_contact(&hit, &ray, at));
         }
-        let best = best?;
-        let touches = self.info[best.surface as usize].touches;
-        let hit = self.finish(&best, &ray);
-        Some(if touches { self.in_contact(hit, &ray, at) } else { hit })
+        Some(hit)
     }
 
     /// A photon that has entered a closed surface must leave it: where no exact crossing is left, the far side is
-    /// taken within rounding.
+    /// taken within rounding, if it comes before the best hit.
     #[inline(never)]
-    fn not_through_the_rim(
-        &self,
-        best: Option<Best>,
-        rays: (&Ray, &BoxRay),
-        at: &Whereabouts,
+    fn rim<'a>(
+        &'a self,
+        best: Option<&Best<'a>>,
+        rays: (&'a Ray, &'a BoxRay),
+        at: &'a Whereabouts,
         skipped: &mut u64,
         tree: bool,
-    ) -> Option<Best> {
-        let Some(far) = best else { return self.far_side(None, None, rays, at, skipped, tree) };
+    ) -> Option<Best<'a>> {
+        let Some(far) = best else { return self.far_side(f64::INFINITY, None, rays, at, skipped, tree) };
         // Of those entered at this very place, the last one as a rule, each must have a far side ahead.
-        let mut best = best;
+        let mut rim: Option<Best<'a>> = None;
         for entered in at.entered_here().filter(|s| s.0 != far.surface) {
             let mut search = Search::<false>::new(self, rays, at, Some(entered));
             self.run(&mut search, tree);
             if search.best.is_none() {
-                best = self.far_side(best, Some(entered), rays, at, skipped, tree);
+                let before = rim.as_ref().unwrap_or(far).t;
+                rim = self.far_side(before, Some(entered), rays, at, skipped, tree).or(rim);
             }
         }
-        best
+        rim
     }
 
-    /// The far side within rounding of a closed surface, or of any, if it comes before the best hit so far.
-    fn far_side(
-        &self,
-        best: Option<Best>,
+    /// The far side within rounding of a closed surface, or of any, if there is one no farther than `before` (m).
+    fn far_side<'a>(
+        &'a self,
+        before: f64,
         only: Option<SurfaceId>,
-        rays: (&Ray, &BoxRay),
-        at: &Whereabouts,
+        rays: (&'a Ray, &'a BoxRay),
+        at: &'a Whereabouts,
         skipped: &mut u64,
         tree: bool,
-    ) -> Option<Best> {
+    ) -> Option<Best<'a>> {
         let mut search = Search::<true>::new(self, rays, at, only);
         self.run(&mut search, tree);
-        match (best, search.best) {
-            (Some(b), Some(s)) if b.t < s.t => best,
-            (_, Some(s)) => {
-                *skipped += 1;
-                Some(s)
-            }
-            (b, None) => b,
-        }
+        let far = search.best.filter(|far| far.t <= before);
+        *skipped += u64::from(far.is_some());
+        far
     }
 
     #[inline(always)]
-    fn run<const LENIENT: bool>(&self, search: &mut Search<'_, LENIENT>, tree: bool) {
+    fn run<'a, const LENIENT: bool>(&'a self, search: &mut Search<'a, LENIENT>, tree: bool) {
         if !tree {
             for block in &self.tree.blocks {
                 search.block(block);
@@ -343,7 +335,7 @@ impl Geometry {
     }
 
     #[inline(always)]
-    fn walk_tree<V: Visitor>(&self, boxes: &BoxRay, visitor: &mut V) {
+    fn walk_tree<'a, V: Visitor<'a>>(&'a self, boxes: &BoxRay, visitor: &mut V) {
         #[cfg(target_arch = "x86_64")]
         if self.avx2 {
             // SAFETY: `avx2` is set only where the processor was found to have it.
@@ -356,16 +348,16 @@ impl Geometry {
         self.walk(boxes, visitor);
     }
 
-    /// The walk compiled for AVX2. No fused operations: the same bits as without.
+    /// The walk compiled for AVX2 and bit counts. No fused operations: the same bits as without.
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn walk_avx2<V: Visitor>(&self, boxes: &BoxRay, visitor: &mut V) {
+    #[target_feature(enable = "avx2,bmi1")]
+    fn walk_avx2<'a, V: Visitor<'a>>(&'a self, boxes: &BoxRay, visitor: &mut V) {
         self.walk(boxes, visitor);
     }
 
     /// The stack holds 7 entries a level and one more; the tree's depth picks its size.
     #[inline(always)]
-    fn walk<V: Visitor>(&self, boxes: &BoxRay, visitor: &mut V) {
+    fn walk<'a, V: Visitor<'a>>(&'a self, boxes: &BoxRay, visitor: &mut V) {
         match self.tree.depth {
             0..=9 => self.tree.walk::<64, _>(boxes, visitor),
             10..=18 => self.tree.walk::<128, _>(boxes, visitor),
@@ -380,22 +372,23 @@ impl Geometry {
         let corners = self.surfaces[surface as usize].shape.triangle((primitive - first_primitive) as usize);
         let corners = corners.map_or([[0.0; 3]; 3], |corners| corners.map(|v| v.to_array()));
         let (view, t) = (View::new(&corners, ray), crossing.t.max(0.0));
-        self.finish(&Best { t, rank, primitive, surface, crossing, corners, view }, ray)
+        let place = (&Block::EMPTY, 0);
+        self.finish(&Best { t, rank, primitive, surface, crossing, view, place }, &corners, ray)
     }
 
-    /// Position and normals of the chosen candidate.
+    /// Position and normals of the chosen candidate, whose triangle has these corners.
     #[inline(always)]
-    fn finish(&self, best: &Best, ray: &Ray) -> Hit {
+    fn finish(&self, best: &Best<'_>, corners: &[[f64; 3]; 3], ray: &Ray) -> Hit {
         let info = &self.info[best.surface as usize];
         let shape = &self.surfaces[best.surface as usize].shape;
         let face = best.primitive - info.first_primitive;
         let [v, w] = best.crossing.weights;
         let facing = if best.crossing.front { -ray.direction } else { ray.direction };
         let flat = || {
-            let [a, b, c] = best.corners.map(DVec3::from_array);
+            let [a, b, c] = corners.map(DVec3::from_array);
             let (ab, ac) = (b - a, c - a);
             let normal = ab.cross(ac).try_normalize().unwrap_or(facing);
-            let bound = best.view.bound(ray, coordinate_error(&best.corners, ray));
+            let bound = best.view.bound(ray, coordinate_error(corners, ray));
             (a + ab * v + ac * w, normal, bound)
         };
         let along = ray.origin + ray.direction * best.t;

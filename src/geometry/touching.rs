@@ -11,7 +11,8 @@ use super::{Body, Geometry, Hit, Met, SurfaceId, Touch, Whereabouts};
 impl Geometry {
     /// A hit on a surface that touches others: the face among those here that comes first, with those that go with it.
     #[cold]
-    pub(super) fn in_contact(&self, mut hit: Hit, ray: &Ray, at: &Whereabouts) -> Hit {
+    pub(super) fn in_contact(&self, hit: &Hit, ray: &Ray, at: &Whereabouts) -> Hit {
+        let mut hit = *hit;
         // Its own body's face comes before the one beyond the film.
         if hit.front {
             let own = self.covering(&hit, ray).find(|(partner, crossing)| {

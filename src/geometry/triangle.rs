@@ -47,17 +47,17 @@ impl Block {
         [corner(0), corner(1), corner(2)]
     }
 
-    /// Bit per lane: not surely missed. An edge function that is zero in rounded arithmetic, or NaN, rules nothing
-    /// out, so this agrees with the exact test on every lane it clears.
+    /// The lanes in the ray's frame, and a bit for each that is not surely missed. An edge function that is zero in
+    /// rounded arithmetic, or NaN, rules nothing out, so this agrees with the exact test on every lane it clears.
     #[inline(always)]
-    pub fn candidates(&self, ray: &Ray) -> u32 {
-        let mut x = [[0.0; LANES]; 3];
-        let mut y = [[0.0; LANES]; 3];
+    pub fn candidates(&self, ray: &Ray) -> (Lanes, u32) {
+        let [mut x, mut y, mut depths] = [[[0.0; LANES]; 3]; 3];
         let (ox, oy, oz) = (ray.o[ray.kx], ray.o[ray.ky], ray.o[ray.kz]);
         for k in 0..3 {
             let (vx, vy, vz) = (&self.v[k][ray.kx], &self.v[k][ray.ky], &self.v[k][ray.kz]);
             for l in 0..LANES {
                 let depth = vz[l] - oz;
+                depths[k][l] = depth;
                 x[k][l] = (vx[l] - ox) - ray.sx * depth;
                 y[k][l] = (vy[l] - oy) - ray.sy * depth;
             }
@@ -75,7 +75,25 @@ impl Block {
         for l in 0..LANES {
             mask |= u32::from(positive[l] & negative[l] == 0) << l;
         }
-        mask & ((1 << self.count) - 1)
+        (Lanes { x, y, depth: depths }, mask & ((1 << self.count) - 1))
+    }
+}
+
+/// The triangles of a leaf as the ray sees them, `[vertex][lane]`: what [`Ray::shear`] gives.
+pub(crate) struct Lanes {
+    x: [[f64; LANES]; 3],
+    y: [[f64; LANES]; 3],
+    /// Along the ray's main axis, not yet times [`Ray::sz`].
+    depth: [[f64; LANES]; 3],
+}
+
+impl Lanes {
+    /// One of them.
+    #[inline(always)]
+    pub fn view(&self, lane: usize, ray: &Ray) -> View {
+        let corner =
+            |k: usize| Sheared { x: self.x[k][lane], y: self.y[k][lane], z: ray.sz * self.depth[k][lane] };
+        View::of([corner(0), corner(1), corner(2)])
     }
 }
 
@@ -105,7 +123,11 @@ impl View {
     /// The triangle as the ray sees it.
     #[inline(always)]
     pub fn new(triangle: &[[f64; 3]; 3], ray: &Ray) -> Self {
-        let [a, b, c] = [ray.shear(triangle[0]), ray.shear(triangle[1]), ray.shear(triangle[2])];
+        Self::of([ray.shear(triangle[0]), ray.shear(triangle[1]), ray.shear(triangle[2])])
+    }
+
+    #[inline(always)]
+    fn of([a, b, c]: [Sheared; 3]) -> Self {
         let edge = [
             signed_difference(c.x, b.y, c.y, b.x),
             signed_difference(a.x, c.y, a.y, c.x),

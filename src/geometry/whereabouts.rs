@@ -5,7 +5,7 @@
 //! surfaces it is behind, and, between two faces in contact, which of them comes next. A candidate hit that contradicts
 //! this is the same crossing seen again, and is skipped.
 
-use super::{Hit, SurfaceId};
+use super::{Hit, SurfaceId, Touch};
 
 /// A side of a surface: front is where the outward normal points to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,22 +135,28 @@ impl Whereabouts {
         }
         let through = hit.front == (side == Side::Back);
         self.next = NO_FACE;
-        if let Some(touch) = &hit.touch {
-            for other in touch.joint.iter().flatten() {
-                self.leave_face(*other, through, true);
-            }
-            if let Some(face) = touch.film {
-                // It stays before that face, whether it goes there now or not.
-                self.leave_face(Met { front: true, ..face }, false, true);
-                if side == Side::Front {
-                    self.next = face.primitive;
-                }
-            }
+        match &hit.touch {
+            None => self.leave_face(hit.face_met(), through, false),
+            Some(touch) => self.leave_touch(hit.face_met(), touch, through, side),
         }
-        self.leave_face(hit.face_met(), through, hit.touch.is_some());
     }
 
-    #[inline]
+    #[cold]
+    fn leave_touch(&mut self, face: Met, touch: &Touch, through: bool, side: Side) {
+        for other in touch.joint.iter().flatten() {
+            self.leave_face(*other, through, true);
+        }
+        if let Some(next) = touch.film {
+            // It stays before that face, whether it goes there now or not.
+            self.leave_face(Met { front: true, ..next }, false, true);
+            if side == Side::Front {
+                self.next = next.primitive;
+            }
+        }
+        self.leave_face(face, through, true);
+    }
+
+    #[inline(always)]
     fn leave_face(&mut self, face: Met, through: bool, between: bool) {
         let Met { primitive, surface, front, body } = face;
         let side = if front == through { Side::Back } else { Side::Front };

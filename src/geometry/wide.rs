@@ -108,17 +108,23 @@ impl BoxRay {
             }
         }
         let slack = SLACK + (size * f64::EPSILON * 16.0) as f32;
-        let o = o.to_array().map(|x| x as f32);
-        let d = ray.direction.to_array();
-        let negative = d.map(|x| x.is_sign_negative());
-        let inverse = d.map(|x| 1.0 / x as f32);
-        let shift = |k: usize, towards: bool| if towards { o[k] + slack } else { o[k] - slack };
+        let d = ray.direction;
+        let (ix, iy, iz) = (1.0 / d.x as f32, 1.0 / d.y as f32, 1.0 / d.z as f32);
+        let axis = |o: f64, negative: bool| {
+            let (o, towards) = (o as f32, if negative { -slack } else { slack });
+            (o + towards, o - towards, usize::from(negative))
+        };
+        // Written out: arrays that are mapped went through memory.
+        let (nx, fx, px) = axis(o.x, d.x.is_sign_negative());
+        let (ny, fy, py) = axis(o.y, d.y.is_sign_negative());
+        let (nz, fz, pz) = axis(o.z, d.z.is_sign_negative());
+        let (near, far) = (1.0 - RELATIVE, 1.0 + RELATIVE);
         Some(Self {
-            near_inverse: inverse.map(|x| x * (1.0 - RELATIVE)),
-            far_inverse: inverse.map(|x| x * (1.0 + RELATIVE)),
-            near_origin: std::array::from_fn(|k| shift(k, !negative[k])),
-            far_origin: std::array::from_fn(|k| shift(k, negative[k])),
-            first_plane: negative.map(usize::from),
+            near_inverse: [ix * near, iy * near, iz * near],
+            far_inverse: [ix * far, iy * far, iz * far],
+            near_origin: [nx, ny, nz],
+            far_origin: [fx, fy, fz],
+            first_plane: [px, py, pz],
             start,
             scale: to.scale,
         })
@@ -193,7 +199,7 @@ impl WideTree {
     ///
     /// `STACK` must be at least `7 depth + 1`: every node popped pushes at most seven.
     #[inline(always)]
-    pub fn walk<const STACK: usize, V: Visitor>(&self, ray: &BoxRay, visitor: &mut V) {
+    pub fn walk<'a, const STACK: usize, V: Visitor<'a>>(&'a self, ray: &BoxRay, visitor: &mut V) {
         let mut stack = [(0.0f32, 0u32); STACK];
         let mut top = 0;
         let mut current = self.root;
@@ -248,9 +254,9 @@ impl WideTree {
 }
 
 /// What is done at the leaves.
-pub(crate) trait Visitor {
+pub(crate) trait Visitor<'a> {
     /// A leaf that the ray may touch.
-    fn leaf(&mut self, block: &Block);
+    fn leaf(&mut self, block: &'a Block);
     /// Normalised distance beyond which nothing is of interest.
     fn limit(&self) -> f32;
 }

@@ -65,7 +65,7 @@ fn stays(scene: &Scene, points: &IndependentPoints, index: u64) -> bool {
     for _ in 0..MOST_FACES {
         let Some(hit) = scene.geometry.nearest(origin, direction, &at, &mut 0) else { return false };
         origin = hit.position;
-        let Interface::Between(indices) = scene.media.interface(&hit, &at) else {
+        let Interface::Between(indices) = scene.media.reached(&hit, &at).interface else {
             scene.media.leave(&mut at, &hit, hit.other_side());
             continue;
         };

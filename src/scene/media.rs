@@ -51,6 +51,16 @@ pub struct Media {
 
 /// A face, for what arrives there.
 #[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    /// What it is between.
+    pub interface: Interface,
+    /// Whether the medium on the side of arrival is another than the scene says there is at an open surface, or the index
+    /// outside a body another than the scene says.
+    pub is_contradicted: bool,
+}
+
+/// What a face is between.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Interface {
     /// The medium is the same on both sides: nothing happens.
     Nothing,
@@ -144,22 +154,28 @@ impl Media {
         self.roles.iter().filter(|role| **role != Role::Solid).count() > 1
     }
 
-    /// What a hit face is between for a photon in this state.
+    /// A hit face for a photon in this state.
     #[inline]
-    pub fn interface(&self, hit: &Hit, at: &Whereabouts) -> Interface {
-        match self.role(hit.surface) {
-            Role::Solid => Interface::Between([1.0; 2]),
+    pub fn reached(&self, hit: &Hit, at: &Whereabouts) -> Reached {
+        let role = &self.roles[hit.surface.0 as usize];
+        match role {
+            Role::Solid => Reached { interface: Interface::Between([1.0; 2]), is_contradicted: false },
             // The usual cases: an open surface alone, and a body alone.
-            Role::Open { media } if hit.touch.is_none() && !at.is_behind_any() => {
-                self.between(at.ambient(), media[usize::from(hit.front)])
-            }
-            Role::Body { medium, .. }
+            Role::Open { media } if hit.touch.is_none() && !at.is_behind_any() => Reached {
+                interface: self.between(at.ambient(), media[usize::from(hit.front)]),
+                is_contradicted: at.ambient() != media[usize::from(!hit.front)],
+            },
+            Role::Body { medium, outside, .. }
                 if hit.touch.is_none() && hit.body == Body::Simple && at.is_alone(hit.surface, hit.front) =>
             {
-                let (inside, outside) = (medium, at.ambient());
-                if hit.front { self.between(outside, inside) } else { self.between(inside, outside) }
+                let (before, behind) =
+                    if hit.front { (at.ambient(), *medium) } else { (*medium, at.ambient()) };
+                Reached {
+                    interface: self.between(before, behind),
+                    is_contradicted: outside.is_some_and(|ior| self.ior(at.ambient()) != ior),
+                }
             }
-            Role::Open { .. } | Role::Body { .. } => self.of_clear(hit, at),
+            Role::Open { .. } | Role::Body { .. } => self.reached_by_rank(role, hit, at),
         }
     }
 
@@ -171,11 +187,20 @@ impl Media {
         Interface::Between([self.media[usize::from(before)].ior, self.media[usize::from(after)].ior])
     }
 
+    /// Where bodies are in one another or in contact.
     #[inline(never)]
-    fn of_clear(&self, hit: &Hit, at: &Whereabouts) -> Interface {
+    fn reached_by_rank(&self, role: &Role, hit: &Hit, at: &Whereabouts) -> Reached {
         let joint = hit.touch.map_or([None; 2], |touch| touch.joint);
         let crossed = [Some(hit.face_met()), joint[0], joint[1]];
-        self.between(self.with(at, &[]), self.with(at, &crossed))
+        let is_contradicted = match role {
+            Role::Solid => false,
+            Role::Open { media } => at.ambient() != media[usize::from(!hit.front)],
+            Role::Body { outside, .. } => outside.is_some_and(|ior| {
+                let left = if hit.front { None } else { Some(hit.face_met()) };
+                self.ior(self.with(at, &[left])) != ior
+            }),
+        };
+        Reached { interface: self.between(self.with(at, &[]), self.with(at, &crossed)), is_contradicted }
     }
 
     /// The medium of a state that has crossed these faces as well.
@@ -211,38 +236,22 @@ impl Media {
         highest.map_or(ambient, |(_, medium)| medium)
     }
 
-    /// Whether the carried ambient medium is another than the scene says there is where an open surface is reached, or the
-    /// index outside a body than the scene says.
-    #[inline]
-    pub fn is_contradicted(&self, hit: &Hit, at: &Whereabouts) -> bool {
-        match self.role(hit.surface) {
-            Role::Solid => false,
-            Role::Open { media } => at.ambient() != media[usize::from(!hit.front)],
-            Role::Body { outside, .. } => outside.is_some_and(|ior| {
-                let crossed = if hit.front { None } else { Some(hit.face_met()) };
-                self.media[usize::from(self.with(at, &[crossed]))].ior != ior
-            }),
-        }
-    }
-
     /// Goes on from a hit on this side of its surface: the state and, through an open surface, the ambient medium.
-    #[inline]
+    #[inline(always)]
     pub fn leave(&self, at: &mut Whereabouts, hit: &Hit, side: Side) {
         at.leave(hit, side);
         let through = hit.front == (side == Side::Back);
         if through {
             self.change_ambient(at, hit.surface, hit.front);
-            if let Some(touch) = &hit.touch {
-                for face in touch.joint.iter().flatten() {
-                    self.change_ambient(at, face.surface, face.front);
-                }
+            for face in hit.touch.iter().flat_map(|touch| touch.joint.iter().flatten()) {
+                self.change_ambient(at, face.surface, face.front);
             }
         }
     }
 
     #[inline]
     fn change_ambient(&self, at: &mut Whereabouts, surface: SurfaceId, front: bool) {
-        if let Role::Open { media } = self.role(surface) {
+        if let Role::Open { media } = &self.roles[surface.0 as usize] {
             at.set_ambient(media[usize::from(front)]);
         }
     }

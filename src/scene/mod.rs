@@ -140,7 +140,7 @@ impl Scene {
         loop {
             let hit = self.geometry.nearest(origin, direction, &at, &mut 0);
             let Some(hit) = hit.filter(|hit| hit.t < distance) else { return false };
-            if self.media.interface(&hit, &at) != Interface::Nothing {
+            if self.media.reached(&hit, &at).interface != Interface::Nothing {
                 return true;
             }
             self.media.leave(&mut at, &hit, hit.other_side());

@@ -17,8 +17,8 @@ use crate::surface::Throughput;
 
 use super::census::Census;
 use super::ledger::Ledger;
-use super::trap::walk;
-use super::walk::{End, Sink};
+use super::trap::limit;
+use super::walk::{End, Sink, walk_until};
 
 /// Photons of one task: large enough that its bookkeeping costs nothing, small enough for an even load and a prompt
 /// end on interruption.
@@ -143,6 +143,7 @@ fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
     sink: &mut S,
     traced: &mut Traced,
 ) {
+    let trapped_after = limit(scene);
     for index in indices {
         if how.interrupt.load(Ordering::Relaxed) {
             traced.complete = false;
@@ -158,7 +159,8 @@ fn trace_batch<P: Points, S: Sink<T>, T: Throughput>(
         let exceptions = &mut traced.census.exceptions;
         let start = scene.start(emitter);
         let carried = carried.tinted(scene.emitter_colour(emitter));
-        let end = walk(scene, emission, start, carried, &mut coordinates, sink, exceptions);
+        let end =
+            walk_until(trapped_after, scene, emission, start, carried, &mut coordinates, sink, exceptions);
         traced.ledger.end(end);
         if end == End::Missed {
             *traced.census.missed.entry(emitter).or_default() += 1;

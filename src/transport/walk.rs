@@ -76,40 +76,32 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
     // are no events, but guarded: no rounding at an edge may keep a photon.
     let (mut events, mut guarded, mut reflections) = (0, 0, 0);
     while guarded < MAX_EVENTS {
-        let Some(hit) =
-            scene.geometry.nearest(origin, direction, &whereabouts, &mut exceptions.skipped_crossings)
-        else {
+        let found =
+            scene.geometry.nearest(origin, direction, &whereabouts, &mut exceptions.skipped_crossings);
+        let Some(hit) = &found else {
             for body in scene.media.bodies_of(&whereabouts) {
                 *exceptions.lost.entry(body).or_default() += 1;
             }
             return if events == 0 { End::Missed } else { End::Escaped };
         };
-        sink.arrive(&Arrival { hit: &hit, direction, events, carried: &carried, whereabouts: &whereabouts });
+        let arrival = Arrival { hit, direction, events, carried: &carried, whereabouts: &whereabouts };
+        sink.arrive(&arrival);
         exceptions.meets(hit.surface);
         if hit.touch.is_some() {
-            for joint in scene.geometry.joint_hits(&hit) {
-                let hit = &joint;
-                exceptions.meets(hit.surface);
-                sink.arrive(&Arrival {
-                    hit,
-                    direction,
-                    events,
-                    carried: &carried,
-                    whereabouts: &whereabouts,
-                });
-            }
+            arrive_jointly(scene, &arrival, sink, exceptions);
         }
-        if scene.media.is_contradicted(&hit, &whereabouts) {
+        let reached = scene.media.reached(hit, &whereabouts);
+        if reached.is_contradicted {
             *exceptions.contradicted.entry(hit.surface).or_default() += 1;
         }
-        let Interface::Between(indices) = scene.media.interface(&hit, &whereabouts) else {
+        let Interface::Between(indices) = reached.interface else {
             // The same medium on both sides.
-            scene.media.leave(&mut whereabouts, &hit, hit.other_side());
+            scene.media.leave(&mut whereabouts, hit, hit.other_side());
             origin = hit.position;
             guarded += 1;
             continue;
         };
-        let at = Incidence::of(&hit, direction, indices);
+        let at = Incidence::of(hit, direction, indices);
         // Inside a body, where the medium beyond its face is the thinner one.
         let is_inside = indices[0] > indices[1] && hit.body != Body::Open;
         let went_through;
@@ -125,7 +117,7 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
                 }
                 went_through = through;
                 let side = if hit.front == through { Side::Back } else { Side::Front };
-                scene.media.leave(&mut whereabouts, &hit, side);
+                scene.media.leave(&mut whereabouts, hit, side);
                 (origin, direction) = (hit.position, onward);
             }
         }
@@ -142,6 +134,20 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
         }
     }
     End::Killed
+}
+
+/// The arrivals at the faces that are crossed at once with the one of this arrival.
+#[cold]
+fn arrive_jointly<S: Sink<T>, T>(
+    scene: &Scene,
+    arrival: &Arrival<'_, T>,
+    sink: &mut S,
+    exceptions: &mut Exceptions,
+) {
+    for joint in scene.geometry.joint_hits(arrival.hit) {
+        exceptions.meets(joint.surface);
+        sink.arrive(&Arrival { hit: &joint, ..*arrival });
+    }
 }
 
 #[cfg(test)]

@@ -111,10 +111,11 @@ impl<'a, const C: usize> EyePath<'a, C> {
                 }
             }
             let Some(hit) = hit else { return };
-            if scene.media.is_contradicted(&hit, &path.at) {
+            let reached = scene.media.reached(&hit, &path.at);
+            if reached.is_contradicted {
                 self.count_contradicted(hit.surface);
             }
-            let Interface::Between(indices) = scene.media.interface(&hit, &path.at) else {
+            let Interface::Between(indices) = reached.interface else {
                 scene.media.leave(&mut path.at, &hit, hit.other_side());
                 path.ray.origin = hit.position;
                 continue;
