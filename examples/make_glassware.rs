@@ -6,13 +6,12 @@
 //!
 //! | mesh | what |
 //! |---|---|
-//! | `wine_glass.obj` | a stemmed glass, all of its surface that meets air: foot, stem, bowl, rim, and the inside down to the wine |
-//! | `wine_glass_wet.obj` | the inside below the level of the wine: behind the front is glass, before it wine |
-//! | `wine_surface.obj` | the wine's flat surface, front up |
+//! | `wine_glass.obj` | a stemmed glass, closed: foot, stem, bowl, rim and the inside; its foot is flat, at z = 0 |
+//! | `wine.obj` | the wine in it, closed: its side and bottom run half-way through the glass, which fills what is in both (`priority`) |
 //! | `ring.obj` | a finger ring of 50 mm: 46 mm inside, 22 mm high, its edges rounded |
 //!
 //! The bowl is r = R sqrt(sin(0.72 pi t)), t = (z - z0) / (z1 - z0), round below, and 0.88 R wide at the rim; inside it is the
-//! same with R less by the wall of 1.4 mm and z0 higher by 4 mm. The three meshes of the glass meet in the same vertices.
+//! same with R less by the wall of 1.4 mm and z0 higher by 4 mm, and the wine's side is the same with half of both.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -40,19 +39,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Name and text of every file.
 pub fn files() -> Vec<(&'static str, String)> {
     let glass = Glass::default();
-    let (outside, inside) = (glass.outside(), glass.inside());
-    let (wet, dry): (Vec<Point>, Vec<Point>) = inside.iter().partition(|p| p.z <= glass.level_m);
-    // The level is one of the points, which both parts have.
-    let level = wet.last().copied().into_iter();
-    let in_air: Vec<Point> =
-        outside.into_iter().chain(dry.iter().rev().copied()).chain(level.clone()).collect();
-    let from_level: Vec<Point> = wet.iter().rev().copied().collect();
-    let surface: Vec<Point> =
-        level.clone().flat_map(|p| [p, Point { r: 0.5 * p.r, z: p.z }, Point { r: 0.0, z: p.z }]).collect();
+    let closed: Vec<Point> = glass.outside().into_iter().chain(glass.inside().into_iter().rev()).collect();
     vec![
-        ("wine_glass.obj", turned(&in_air, false, "a wine glass where it meets air")),
-        ("wine_glass_wet.obj", turned(&from_level, false, "a wine glass where it meets wine")),
-        ("wine_surface.obj", turned(&surface, false, "the surface of the wine")),
+        ("wine_glass.obj", turned(&closed, false, "a wine glass")),
+        ("wine.obj", turned(&glass.wine(), false, "the wine in a wine glass, reaching into it")),
         ("ring.obj", turned(&ring(), true, "a ring")),
     ]
 }
@@ -94,8 +84,8 @@ impl Glass {
     fn outside(&self) -> Vec<Point> {
         let h = self.foot_height_m;
         let edge = 0.5 * h;
-        let mut points: Vec<Point> =
-            (0..=6).map(|i| Point { r: (self.foot_radius_m - edge) * f64::from(i) / 6.0, z: 0.0 }).collect();
+        // Flat, so in one piece: every photon on the table is asked about each facet that stands on it.
+        let mut points: Vec<Point> = [0.0, self.foot_radius_m - edge].map(|r| Point { r, z: 0.0 }).into();
         // The foot's edge, a half circle.
         points.extend((1..=6).map(|i| {
             let angle = PI * (f64::from(i) / 6.0 - 0.5);
@@ -129,22 +119,33 @@ impl Glass {
         points
     }
 
+    /// The curve at this part of the bowl's wall, 0 outside and 1 inside: the t of the wine's level, and the point of a t,
+    /// which goes from 0 at the bottom to 1 at the rim.
+    fn within(&self, part: f64) -> (f64, impl Fn(f64) -> Point) {
+        let bottom = self.bowl_bottom_m + 0.004 * part;
+        let (height, radius) = (self.rim_m - bottom, self.bowl_radius_m - self.wall_m * part);
+        ((self.level_m - bottom) / height, move |t| Point { r: bowl(radius, t), z: bottom + height * t })
+    }
+
     /// From the axis at the bottom of the bowl, inside, to the rim; the level of the wine is one of the points.
     fn inside(&self) -> Vec<Point> {
-        let bottom = self.bowl_bottom_m + 0.004;
-        let height = self.rim_m - bottom;
-        let at = |t: f64| Point { r: bowl(self.bowl_radius_m - self.wall_m, t), z: bottom + height * t };
-        let level = (self.level_m - bottom) / height;
+        let (level, at) = self.within(1.0);
         // Even steps of the root: even steps along the round bottom.
-        let below = (0..=24).map(|i| level * (f64::from(i) / 24.0).powi(2)).map(at);
-        let above = (1..=14).map(|i| level + (1.0 - level) * f64::from(i) / 14.0).map(at);
-        let exactly = |mut p: Point| {
-            if (p.z - self.level_m).abs() < 1e-9 {
-                p.z = self.level_m;
-            }
-            p
-        };
-        below.chain(above).map(exactly).collect()
+        let below = (0..=24).map(|i| level * (f64::from(i) / 24.0).powi(2));
+        let above = (1..=14).map(|i| level + (1.0 - level) * f64::from(i) / 14.0);
+        below.chain(above).map(at).collect()
+    }
+
+    /// From the axis at the bottom, half-way through the glass, to the level, and along it to the axis.
+    fn wine(&self) -> Vec<Point> {
+        let (level, at) = self.within(0.5);
+        let flat = |r: f64| Point { r, z: self.level_m };
+        let (level_inside, at_inside) = self.within(1.0);
+        let (side, inside) = (at(level).r, at_inside(level_inside).r);
+        let mut points: Vec<Point> = (0..24).map(|i| at(level * (f64::from(i) / 24.0).powi(2))).collect();
+        // The normal at the corner is slanted; the next point, still in the glass, is level.
+        points.extend([flat(side), flat(0.5 * (side + inside)), flat(0.5 * inside), flat(0.0)]);
+        points
     }
 }
 
