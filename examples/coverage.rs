@@ -1,5 +1,6 @@
-//! How often a 95 % interval contains the exact value, over 10,000 seeds: `cargo run --release --example coverage`, a quarter of an hour
-//! on two cores. A number after it is another number of seeds. The figures are in docs/TRUST.md.
+//! How often a 95 % interval contains the exact value, over 10,000 seeds: `cargo run --release --features
+//! measurements --example coverage`, a quarter of an hour on two cores. A number after it is another number of seeds.
+//! The figures are in docs/TRUST.md.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, clippy::panic, dead_code)]
 
 #[path = "../tests/support/coverage.rs"]

@@ -1,6 +1,6 @@
-//! The bias of the photon map's pictures, measured against splatted ones: `cargo run --release --example picture_bias -- FOLDER`
-//! writes `picture_bias.csv` and `picture_bias.svg` there (docs/PICTURE.md, Bias); about a quarter of an hour on two threads. Names
-//! of scenes after the folder leave out the others.
+//! The bias of the photon map's pictures, measured against splatted ones: `cargo run --release --features measurements
+//! --example picture_bias -- FOLDER` writes `picture_bias.csv` and `picture_bias.svg` there (docs/PICTURE.md, Bias);
+//! about a quarter of an hour on two threads. Names of scenes after the folder leave out the others.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/support/caustic_views.rs"]

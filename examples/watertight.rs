@@ -1,6 +1,6 @@
-//! Rays walked straight through scenes of many bodies, none of which may leak or be met twice: `cargo run --release --example
-//! watertight`, 2 x 10^7 rays, some minutes on two cores. A number after it is another number of rays. The figures are in
-//! docs/TRUST.md.
+//! Rays walked straight through scenes of many bodies, none of which may leak or be met twice: `cargo run --release
+//! --features measurements --example watertight`, 2 x 10^7 rays, some minutes on two cores. A number after it is another
+//! number of rays. The figures are in docs/TRUST.md.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::expect_used, clippy::panic, dead_code)]
 
 #[path = "../tests/geometry/bodies.rs"]

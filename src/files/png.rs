@@ -3,8 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use ::image::codecs::png::PngEncoder;
-use ::image::{ExtendedColorType, ImageEncoder};
+use ::png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
@@ -22,8 +21,25 @@ pub fn write_rgb8(path: impl AsRef<Path>, width: usize, height: usize, bytes: &[
         if bytes.len() as u64 != 3 * u64::from(width) * u64::from(height) {
             return Err(io::Error::other("the picture's bytes do not fit its sides"));
         }
-        PngEncoder::new(writer)
-            .write_image(bytes, width, height, ExtendedColorType::Rgb8)
-            .map_err(io::Error::other)
+        let mut encoder = Encoder::new(writer, width, height);
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(Compression::Fast);
+        encoder.set_filter(Filter::Adaptive);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(bytes)?;
+        Ok(writer.finish()?)
     })
+}
+
+/// Width, height and pixels of a file of 8-bit sRGB.
+#[cfg(test)]
+pub fn read_rgb8(path: &Path) -> ([usize; 2], Vec<u8>) {
+    let file = io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = ::png::Decoder::new(file).read_info().unwrap();
+    assert_eq!(reader.output_color_type(), (ColorType::Rgb, BitDepth::Eight));
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    let (width, height) = reader.info().size();
+    ([width as usize, height as usize], bytes)
 }

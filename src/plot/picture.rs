@@ -71,8 +71,8 @@ fn error_line<const C: usize>(film: &Film<C>, luminances: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::png::read_rgb8;
     use crate::scene::camera::Exposure;
-    use ::image::ImageReader;
     use glam::DVec3;
 
     #[test]
@@ -88,12 +88,11 @@ mod tests {
             bias: vec![0.0; 6],
         };
         write_png(&path, &spec, &film).unwrap();
-        let png = ImageReader::open(&path).unwrap().decode().unwrap().to_rgb8();
-        assert_eq!(png.dimensions(), (3, 2));
+        let (size, bytes) = read_rgb8(&path);
+        assert_eq!(size, [3, 2]);
         // 0, 0.2, ... 1 of white by IEC 61966-2-1.
-        let codes: Vec<[u8; 3]> = png.pixels().map(|p| p.0).collect();
-        assert_eq!(codes, [0, 124, 170, 203, 231, 255].map(|c| [c; 3]));
+        assert_eq!(bytes, [0, 124, 170, 203, 231, 255].map(|c| [c; 3]).concat());
         write_luminance_png(&path, "camera", &spec, &film).unwrap();
-        assert!(ImageReader::open(&path).unwrap().decode().is_ok());
+        read_rgb8(&path);
     }
 }

@@ -92,7 +92,7 @@ const INCLINED_DEG: [f64; 2] = [35.0, 60.0];
 static TRACED: LazyLock<[Outcome; 2]> = LazyLock::new(|| {
     INCLINED_DEG.map(|degrees| {
         let scene = cup(degrees.to_radians(), Material::Absorber, None);
-        trace(&scene, &plan(1 << 21, 16), &AtomicBool::new(false), &|_| {}).unwrap()
+        trace(&scene, &plan(1 << 19, 16), &AtomicBool::new(false), &|_| {}).unwrap()
     })
 });
 

@@ -152,7 +152,7 @@ fn other_scales_change_at_most_one_photon_in_a_million() {
         let original = scaled(&file, 1.0);
         for s in [1e3, 1e-3] {
             let other = scaled(&file, s);
-            let n = 1 << 18;
+            let n = 1 << 16;
             let (k, apart) = changes(&original, &other, n, |p| p / s);
             println!("{} x {s}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());
             assert!(apart <= SCALED_APART_M, "{}: {apart} m", file.display());

@@ -26,7 +26,7 @@ fn bits<const C: usize>(film: &Film<C>, factor: f64) -> Vec<u64> {
 /// The scene at this scale: its run, the bits of its picture in the luminance of scale 1, and how that was made.
 fn seen(file: &Table, s: f64) -> (Outcome, Vec<u64>, PictureSummary) {
     let scene = lengths::scene(&lengths::scaled(file.clone(), s));
-    let plan = plan(1 << 14, 4);
+    let plan = plan(1 << 12, 4);
     let (outcome, picture) = trace_picture(&scene, &plan, false, unwatched(&AtomicBool::new(false))).unwrap();
     let film = match &picture {
         AnyPicture::Grey(picture) => bits(&picture.film, s * s),

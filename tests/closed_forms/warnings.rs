@@ -342,7 +342,7 @@ fn receivers_on_bodies_that_trap_light_are_marked() {
         + &cuboid("tank", "water", [-0.2, -0.1, -0.1], [0.2, 0.1, 0.1], "")
         + "[[receiver]]\nname = \"walls\"\nsurface = \"room\"\nside = \"back\"\n[[receiver]]\nname = \"it\"\nsurface = \"tank\"\nside = \"back\"\n";
     let scene = scene(&text);
-    let outcome = run_with_killed(&scene, Sequence::SobolOwen, 1 << 7, 2, 1);
+    let outcome = run_with_killed(&scene, Sequence::SobolOwen, 1 << 4, 2, 1);
     let statistics: Vec<_> =
         scene.receivers.iter().enumerate().map(|(i, r)| ReceiverStatistics::new(&outcome, r, i)).collect();
     let files = [Vec::new(), Vec::new()];

@@ -1,5 +1,7 @@
 //! Hashes of what a file holds, by its ending.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::path::Path;
 
 use serde_json::Value;
@@ -135,7 +137,10 @@ fn ply(bytes: &[u8]) -> Parts {
 }
 
 fn png(path: &Path) -> Parts {
-    let image = image::open(path).unwrap();
-    let size = format!("{} x {} {:?} ", image.width(), image.height(), image.color());
-    vec![("pixels".into(), hash(&[size.as_bytes(), image.as_bytes()].concat()))]
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    let ((width, height), (colour, depth)) = (reader.info().size(), reader.output_color_type());
+    let size = format!("{width} x {height} {colour:?}{} ", depth as u8);
+    vec![("pixels".into(), hash(&[size.as_bytes(), &pixels].concat()))]
 }

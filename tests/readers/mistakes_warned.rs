@@ -13,6 +13,7 @@ use std::fs;
 
 use crate::broken_scene::{BLACK, LAMP, PLATE, RECEIVER};
 use crate::support::data;
+use crate::support::png::{grey_8, grey_16};
 use crate::support::scenes::run;
 
 /// The scene of a text beside these files.
@@ -180,15 +181,12 @@ fn a_flux_far_from_the_files_own_is_told() {
 #[test]
 fn steps_of_8_bits_are_told_where_they_make_facets() {
     let png = |deep: bool| {
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        let grey = |x: u32, y: u32| (x * x + y * y) as f64 / 512.0;
-        let picture: image::DynamicImage = if deep {
-            image::ImageBuffer::from_fn(17, 17, |x, y| image::Luma([(grey(x, y) * 65535.0) as u16])).into()
+        let shares = (0..17 * 17).map(|i| (i % 17, i / 17)).map(|(x, y)| f64::from(x * x + y * y) / 512.0);
+        if deep {
+            grey_16([17, 17], &shares.map(|g| (g * 65535.0) as u16).collect::<Vec<_>>())
         } else {
-            image::GrayImage::from_fn(17, 17, |x, y| image::Luma([(grey(x, y) * 255.0) as u8])).into()
-        };
-        picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
-        bytes.into_inner()
+            grey_8([17, 17], &shares.map(|g| (g * 255.0) as u8).collect::<Vec<_>>())
+        }
     };
     let field = |material: &str, top: f64, deep: bool| {
         let relief = format!(
@@ -229,7 +227,7 @@ fn smooth_normals_over_sharp_edges_are_named_with_the_remedy() {
         let lamp = LAMP.replace("[0, 0, 2]", "[0.45, 0.55, 1.5]");
         let text = format!("{lamp}{BLACK}{PLATE}{RECEIVER}{MESH}{more}");
         let scene = scene(&text, &[("a.obj", cube().as_bytes())]);
-        warnings(&scene, &run(&scene, Sequence::SobolOwen, 1 << 12, 2, 1))
+        warnings(&scene, &run(&scene, Sequence::SobolOwen, 1 << 10, 2, 1))
     };
     let said = of("smooth = true\n");
     let warning =

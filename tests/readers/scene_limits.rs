@@ -6,6 +6,7 @@ use caustix::math::digest::sha256_hex;
 use glam::DVec3;
 
 use crate::support::data::project;
+use crate::support::png::grey_8;
 
 const SCENE: &str = r#"
 [[emitter]]
@@ -29,8 +30,8 @@ height = [0, 0.1]
 fn a_picture_does_not_make_more_triangles_than_cells_may() {
     let folder = tempfile::tempdir().unwrap();
     // 2^22 cells and one column more.
-    let grey = image::GrayImage::from_pixel(2050, 2049, image::Luma([7]));
-    grey.save(folder.path().join("grey.png")).unwrap();
+    let picture = grey_8([2050, 2049], &vec![7; 2050 * 2049]);
+    std::fs::write(folder.path().join("grey.png"), picture).unwrap();
     let scene = folder.path().join("scene.toml");
     std::fs::write(&scene, SCENE).unwrap();
     let errors = read(&scene).unwrap().build().unwrap_err();
@@ -39,8 +40,8 @@ fn a_picture_does_not_make_more_triangles_than_cells_may() {
     std::fs::write(&scene, format!("{SCENE}cells = [10, 10]\n")).unwrap();
     assert_eq!(read(&scene).unwrap().build().unwrap().geometry.primitive_count(), 200);
     // Without cells: a vertex a pixel, black and white at the heights given.
-    let grey = image::GrayImage::from_raw(4, 3, vec![0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255]).unwrap();
-    grey.save(folder.path().join("grey.png")).unwrap();
+    let picture = grey_8([4, 3], &[0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255]);
+    std::fs::write(folder.path().join("grey.png"), picture).unwrap();
     std::fs::write(&scene, SCENE).unwrap();
     let scene = read(&scene).unwrap().build().unwrap();
     assert_eq!(scene.geometry.primitive_count(), 2 * 3 * 2);

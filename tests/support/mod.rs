@@ -15,6 +15,7 @@ pub mod lamp;
 pub mod local;
 pub mod maps;
 pub mod pictures;
+pub mod png;
 pub mod quadrature;
 pub mod random;
 pub mod scatter_files;
