@@ -57,6 +57,12 @@ impl Case {
         Self { name: name.into(), scene: builder.build().unwrap(), centre, size, meets: false }
     }
 
+    /// How many bodies there are.
+    #[allow(dead_code)]
+    pub fn bodies(&self) -> usize {
+        self.scene.geometry.surfaces().len()
+    }
+
     fn meeting(self) -> Self {
         Self { meets: true, ..self }
     }
