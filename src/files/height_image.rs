@@ -110,7 +110,8 @@ mod tests {
         use BitDepth::{Eight, One, Sixteen};
         use ColorType::{GrayscaleAlpha, Indexed, Rgb, Rgba};
         let heights = |colour, depth, data: &[u8]| {
-            let h = parse(&png([2, 1], colour, depth, data), [0.0, 1.0]).unwrap();
+            // Two rows alike.
+            let h = parse(&png([2, 2], colour, depth, &[data, data].concat()), [0.0, 1.0]).unwrap();
             [0.0, 1.0].map(|u| h.height_m(DVec2::new(u, 0.5)))
         };
         // Red and half of green with blue, by the weights of IEC 61966-2-1 as it rounds them: 0.2126, 0.7152, 0.0722.

@@ -67,7 +67,7 @@ fn a_small_receiver_on_the_axis_and_one_beside_it() {
         let half = 0.09;
         let scene = scene(&(DISC.to_string() + &plate(x, half, 3)));
         let at = |u: f64, v: f64| below(x + half * (2.0 * u - 1.0), half * (2.0 * v - 1.0));
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 15, 16, 10 + i as u64);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 10 + i as u64);
         assert_cells("small cells", &scene, &outcome, 0, &cell_means(3, 3, 2, at));
     }
 }

@@ -100,7 +100,7 @@ fn small_cells_below_centre_corner_and_beside() {
         let text = panel(CENTRE, [WIDTH, HEIGHT], FLUX_LM) + &plate(0.2 + x, -0.1 + y, half, 3);
         let scene = scene(&text);
         let at = |u: f64, v: f64| below(x + half * (2.0 * u - 1.0), y + half * (2.0 * v - 1.0));
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 15, 16, 10 + i as u64);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 10 + i as u64);
         assert_cells("small cells", &scene, &outcome, 0, &cell_means(3, 3, 2, at));
     }
 }

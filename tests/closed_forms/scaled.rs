@@ -115,21 +115,28 @@ fn powers_of_two_change_no_hit() {
     }
 }
 
-/// Photons of `n` that are counted in other cells or end elsewhere, and the largest distance [m, in the first scene]
-/// between arrivals of the others.
-fn changes(a: &Scene, b: &Scene, n: u64, back: impl Fn(DVec3) -> DVec3 + Sync) -> (u64, f64) {
+/// Photons of `n` that are counted in other cells or end elsewhere in a second scene, and the largest distance [m, in the
+/// first scene] between arrivals of the others; for each of several second scenes, with the way back from it.
+fn changes<const K: usize, B: Fn(DVec3) -> DVec3 + Sync>(
+    a: &Scene,
+    others: &[(Scene, B); K],
+    n: u64,
+) -> [(u64, f64); K] {
     let points = OwenPoints::new(3, 0);
     (0..n)
         .into_par_iter()
         .map(|index| {
-            let (p, q) = (path(a, &points, index), path(b, &points, index));
-            if p.end != q.end || p.steps.len() != q.steps.len() || cells(a, &p) != cells(b, &q) {
-                return (1, 0.0);
-            }
-            let steps = p.steps.iter().zip(&q.steps);
-            (0, steps.map(|(s, t)| (s.position - back(t.position)).length()).fold(0.0, f64::max))
+            let p = path(a, &points, index);
+            others.each_ref().map(|(b, back)| {
+                let q = path(b, &points, index);
+                if p.end != q.end || p.steps.len() != q.steps.len() || cells(a, &p) != cells(b, &q) {
+                    return (1, 0.0);
+                }
+                let steps = p.steps.iter().zip(&q.steps);
+                (0, steps.map(|(s, t)| (s.position - back(t.position)).length()).fold(0.0, f64::max))
+            })
         })
-        .reduce(|| (0, 0.0), |x, y| (x.0 + y.0, x.1.max(y.1)))
+        .reduce(|| [(0, 0.0); K], |x, y| std::array::from_fn(|k| (x[k].0 + y[k].0, x[k].1.max(y[k].1))))
 }
 
 /// Scenes in which a change in the last digit of a direction changes the rest of a path as little. A table of scattering
@@ -150,18 +157,18 @@ fn other_scales_change_at_most_one_photon_in_a_million() {
     let (mut photons, mut changed) = (0, 0);
     for file in continuous_scenes() {
         let original = scaled(&file, 1.0);
-        for s in [1e3, 1e-3] {
-            let other = scaled(&file, s);
-            let n = 1 << 16;
-            let (k, apart) = changes(&original, &other, n, |p| p / s);
+        let scales = [1e3, 1e-3];
+        let others = scales.map(|s| (scaled(&file, s), move |p: DVec3| p / s));
+        let n = 1 << 18;
+        let a = run(&original, Sequence::SobolOwen, 1 << 11, 8, 2);
+        for (((k, apart), s), (other, _)) in
+            changes(&original, &others, n).into_iter().zip(scales).zip(&others)
+        {
             println!("{} x {s}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());
             assert!(apart <= SCALED_APART_M, "{}: {apart} m", file.display());
             photons += n;
             changed += k;
-            let (a, b) = (
-                run(&original, Sequence::SobolOwen, 1 << 11, 8, 2),
-                run(&other, Sequence::SobolOwen, 1 << 11, 8, 2),
-            );
+            let b = run(other, Sequence::SobolOwen, 1 << 11, 8, 2);
             for receiver in 0..original.receivers.len() {
                 let (a, b) = (a.receiver_flux_lm(receiver).value, b.receiver_flux_lm(receiver).value);
                 assert!((a - b).abs() <= 1e-9 * a, "{}: {a} lm, {b} lm", file.display());
@@ -179,10 +186,10 @@ fn a_kilometre_away_arrivals_agree_to_a_nanometre() {
     let by = DVec3::new(1000.0, -1000.0, 1000.0);
     let (mut photons, mut changed) = (0, 0);
     for file in continuous_scenes() {
-        let (original, other) =
-            (scaled(&file, 1.0), lengths::scene(&lengths::shifted(lengths::table(&file), by.to_array())));
+        let original = scaled(&file, 1.0);
+        let other = lengths::scene(&lengths::shifted(lengths::table(&file), by.to_array()));
         let n = 1 << 15;
-        let (k, apart) = changes(&original, &other, n, |p| p - by);
+        let [(k, apart)] = changes(&original, &[(other, |p| p - by)], n);
         println!("{}: {k} of {n} change cell, others at most {apart:.1e} m apart", file.display());
         assert!(apart <= SHIFTED_APART_M, "{}: {apart} m", file.display());
         photons += n;

@@ -210,7 +210,7 @@ fn a_point_lamp_through_a_pane_is_shifted_order_by_order() {
                 "[[receiver]]\nsurface = \"floor\"\ncells = [{cells}, {cells}]\n[[receiver]]\nsurface = \"ceiling\"\ncells = [{coarse}, {coarse}]\nevents = \"indirect\"\n"
             );
         let scene = scene(&text);
-        let outcome = run(&scene, Sequence::SobolOwen, 1 << 15, 16, 6);
+        let outcome = run(&scene, Sequence::SobolOwen, 1 << 17, 16, 6);
         for (i, (name, exact)) in [("through", &through), ("back", &back)].into_iter().enumerate() {
             let label = format!("{name}, closed {closed}");
             assert_cells(&label, &scene, &outcome, i, exact);

@@ -117,15 +117,15 @@ fn rays_at_edges_and_vertices_neither_leak_nor_hit_twice() {
     let cube = || Target::new(box_mesh(DVec3::new(-0.5, -0.3, -0.7), DVec3::new(0.5, 0.6, 0.1)).unwrap());
     let ball = || Target::new(icosphere(3));
     let slab = || Target::new(slab(24, 0.05));
-    check("box from inside", run(&cube(), 300_000, 1, from_inside(DVec3::new(0.0, 0.0, -0.3))));
-    check("box from outside", run(&cube(), 300_000, 2, from_outside));
-    check("box along axes", run(&cube(), 300_000, 3, axis_parallel));
-    check("ball from inside", run(&ball(), 300_000, 4, from_inside(DVec3::ZERO)));
-    check("ball from outside", run(&ball(), 250_000, 5, from_outside));
-    check("ball along axes", run(&ball(), 150_000, 6, axis_parallel));
-    check("slab from inside", run(&slab(), 250_000, 7, from_inside(DVec3::new(0.01, -0.02, 0.0))));
-    check("slab from outside", run(&slab(), 250_000, 8, from_outside));
-    check("slab along axes", run(&slab(), 150_000, 9, axis_parallel));
+    check("box from inside", run(&cube(), 100_000, 1, from_inside(DVec3::new(0.0, 0.0, -0.3))));
+    check("box from outside", run(&cube(), 100_000, 2, from_outside));
+    check("box along axes", run(&cube(), 100_000, 3, axis_parallel));
+    check("ball from inside", run(&ball(), 100_000, 4, from_inside(DVec3::ZERO)));
+    check("ball from outside", run(&ball(), 80_000, 5, from_outside));
+    check("ball along axes", run(&ball(), 50_000, 6, axis_parallel));
+    check("slab from inside", run(&slab(), 80_000, 7, from_inside(DVec3::new(0.01, -0.02, 0.0))));
+    check("slab from outside", run(&slab(), 80_000, 8, from_outside));
+    check("slab along axes", run(&slab(), 50_000, 9, axis_parallel));
 }
 
 #[test]

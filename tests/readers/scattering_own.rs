@@ -41,7 +41,7 @@ fn files_on_disk_are_the_formulas() {
 
 /// Albedo of a formula by Gauss-Legendre quadrature in panels of the table's frame.
 fn formula_albedo(table: &make_brdf::Table, lobe: &make_brdf::Lobe, theta_i: f64, phi_i: f64) -> f64 {
-    let rule = Gauss::new(3);
+    let rule = Gauss::new(4);
     let frame = table.frame;
     let transmitted = lobe.quantity == "transmission";
     let wi = make_brdf::incident(theta_i, phi_i);

@@ -29,7 +29,7 @@ const SAMPLES: usize = 200_000;
 /// Samples of one file of many: a difference of twice the size shows as clearly.
 const FEWER: usize = SAMPLES / 4;
 /// Of so many samples one serves for the azimuth given the polar angle: each costs an integral over the whole turn.
-const CONDITIONAL_STEP: usize = 10;
+const CONDITIONAL_STEP: usize = 20;
 /// Chance of a false alarm over all files of a test together.
 const FAMILY: f64 = 0.01;
 const TESTS_A_FILE: usize = 4;
