@@ -95,9 +95,8 @@ pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Sum
 pub use files::bsdf::{parse as parse_scattering, read as read_scattering};
 pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 // Scenes:
-pub use emitter::{
-    AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emits, Emitter, Isotropic, Panel, Photometric,
-};
+pub use emitter::sources::*;
+pub use emitter::{AimFrame, Colour, Emits, Emitter};
 pub use files::scene_toml::{
     RunDefaults, SceneFile, built_in as built_in_scene, parse_scene, read as read_scene_file, read_scene,
 };
@@ -109,7 +108,8 @@ pub use scene::camera::{Camera, CameraSpec};
 pub use scene::media::Medium;
 pub use scene::receiver::{ReceiverEvents, ReceiverSide, ReceiverSpec};
 pub use scene::{Joint, Scene, SceneBuilder, SurfaceOptions};
-pub use surface::{Dielectric, DiffuseTransmission, Lambertian, Material, Mirror, Reflectance, Tabulated};
+pub use surface::models::*;
+pub use surface::{Material, Reflectance};
 // Runs:
 pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace, warnings};
 pub use sequence::Sequence;

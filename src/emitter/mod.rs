@@ -25,15 +25,20 @@ use crate::sample::grid::Grid;
 use crate::sample::method::Sampling;
 use crate::sequence::Points;
 
-pub use area::AreaLight;
-pub use beam::{Beam, BeamSection};
+/// What can be an emitter, as the door shows it.
+pub mod sources {
+    pub use super::area::AreaLight;
+    pub use super::beam::{Beam, BeamSection};
+    pub use super::disc::Disc;
+    pub use super::isotropic::Isotropic;
+    pub use super::panel::Panel;
+    pub use super::photometric::Photometric;
+}
+
 pub use choice::Emitters;
 pub use colour::Colour;
-pub use disc::Disc;
 pub use frame::{AimFrame, FLUX};
-pub use isotropic::Isotropic;
-pub use panel::Panel;
-pub use photometric::Photometric;
+pub use sources::*;
 
 /// The start of a photon.
 #[derive(Debug, Clone, Copy)]

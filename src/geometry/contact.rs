@@ -14,7 +14,7 @@ use super::coplanar::{facing, normal, rounding};
 use super::nearly::{Near, Nearly};
 use super::ray::Ray;
 use super::triangle::View;
-use super::{Body, Info, Met, Shape, Surface, SurfaceId};
+use super::{Body, Info, Shape, Surface, SurfaceId};
 
 /// How a surface behaves towards those that it touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -32,15 +32,6 @@ pub struct Contact {
     pub surfaces: [SurfaceId; 2],
     /// The faces look at each other; else they look the same way.
     pub facing: bool,
-}
-
-/// Faces in contact with one that is met, where it is met.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// Beyond a film: the face that comes next for what stands in the film.
-    pub film: Option<Met>,
-    /// Crossed at once with it.
-    pub joint: [Option<Met>; 2],
 }
 
 /// Of one primitive: another in contact.

@@ -39,7 +39,7 @@ use glam::DVec3;
 
 pub use box_mesh::box_mesh;
 use contact::Contacts;
-pub use contact::{Bond, Contact, Touch};
+pub use contact::{Bond, Contact};
 pub use height_image::{HEIGHT, HeightImage};
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};
@@ -50,7 +50,7 @@ pub use rectangle::Rectangle;
 pub use shape::Shape;
 pub use sphere::Sphere;
 pub use transform::{SCALE, Transform};
-pub use whereabouts::{Body, Met, Side, Whereabouts};
+pub use whereabouts::{Body, Met, Side, Touch, Whereabouts};
 
 use crate::error::invalid::Interval;
 use crate::error::{Diagnostic, Kind, Result};

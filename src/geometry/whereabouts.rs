@@ -5,7 +5,7 @@
 //! surfaces it is behind, and, between two faces in contact, which of them comes next. A candidate hit that contradicts
 //! this is the same crossing seen again, and is skipped.
 
-use super::{Hit, SurfaceId, Touch};
+use super::{Hit, SurfaceId};
 
 /// A side of a surface: front is where the outward normal points to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,6 +33,15 @@ pub struct Met {
     pub front: bool,
     /// Whether the surface has an inside.
     pub body: Body,
+}
+
+/// Faces in contact with one that is met, where it is met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Beyond a film: the face that comes next for what stands in the film.
+    pub film: Option<Met>,
+    /// Crossed at once with it.
+    pub joint: [Option<Met>; 2],
 }
 
 /// Whether a surface has an inside.

@@ -11,8 +11,8 @@
 //! scattered directions in solid angle; both leave out what goes on specularly, which [`Material::specular`]
 //! tells for eye paths, in luminance. Coordinates are drawn only where there is more than one outcome.
 //!
-//! To add a material: a file beside these that answers [`Model`], its line in [`Material`] and in `ask` below
-//! it, its keys in `files/scene_toml/material` and docs/SCENE.md.
+//! To add a material: a file beside these that answers [`Model`], its lines in [`models`], in [`Material`] and in `ask`
+//! below it, its keys in `files/scene_toml/material` and docs/SCENE.md.
 
 mod absorber;
 pub mod dielectric;
@@ -34,15 +34,20 @@ use glam::DVec3;
 
 use crate::sample::coordinates::Chooser;
 
-pub use dielectric::Dielectric;
-pub use diffuse_transmission::DiffuseTransmission;
+/// The models, as the door shows them.
+pub mod models {
+    pub use super::dielectric::Dielectric;
+    pub use super::diffuse_transmission::DiffuseTransmission;
+    pub use super::lambertian::Lambertian;
+    pub use super::mirror::Mirror;
+    pub use super::tabulated::Tabulated;
+}
+
 pub use eye::EyeWeight;
 pub use incidence::{Incidence, Leg};
-pub use lambertian::Lambertian;
-pub use mirror::Mirror;
+pub use models::*;
 pub use reference::Reference;
 pub use reflectance::{Reflectance, luminance, luminance_of};
-pub use tabulated::Tabulated;
 pub use throughput::{Fixed, Grey, Rgb, Throughput};
 
 /// Everything a surface can be made of.

@@ -16,6 +16,26 @@ fn the_scene_the_errors_are_put_into_is_good() {
     assert_eq!(scene.build().unwrap().receivers[0].cells, Cells::Grid { nu: 256, nv: 256 });
 }
 
+/// The types of a table that docs/SCENE.md names, in its order: what messages must offer.
+fn documented_types(table: &str) -> Vec<String> {
+    let page = include_str!("../../docs/SCENE.md");
+    let (_, section) = page.split_once(&format!("\n## `{table}`\n")).unwrap();
+    let rows = section.lines().skip_while(|line| !line.starts_with("| `type`"));
+    let rows = rows.take_while(|line| line.starts_with('|'));
+    let is_type = |row: &&str| row.starts_with("| `\"") || row.starts_with("| `type` | `\"");
+    let cell = |row: &str| row.split('|').find(|cell| cell.contains("`\"")).unwrap().to_owned();
+    let cells: Vec<String> = rows.filter(is_type).map(cell).collect();
+    let words = cells.iter().flat_map(|cell| cell.split("`\"").skip(1));
+    words.map(|word| word.split('"').next().unwrap().to_owned()).collect()
+}
+
+/// Words as a message lists them, each between these marks.
+fn listed(words: &[String], mark: &str) -> String {
+    let (last, others) = words.split_last().unwrap();
+    let marked = |word: &String| format!("{mark}{word}{mark}");
+    format!("{} or {}", others.iter().map(marked).collect::<Vec<_>>().join(", "), marked(last))
+}
+
 #[test]
 fn top_level() {
     let good = format!("{BLACK}{PLATE}{RECEIVER}");
@@ -88,14 +108,14 @@ fn emitters() {
         &emitter("[[emitter]]\ntype = «\"isotropc\""),
         Kind::Unknown,
         "type = \"isotropc\"",
-        "photometric, isotropic, collimated, panel or disc",
+        &listed(&documented_types("[[emitter]]"), ""),
     );
     assert_eq!(error.advice(), Some("did you mean \"isotropic\"?"));
     expect(
         &emitter("«[[emitter]]\nposition = [0, 0, 0]"),
         Kind::Missing,
         "an [[emitter]] without `type`",
-        "type = \"photometric\", \"isotropic\", \"collimated\", \"panel\" or \"disc\"",
+        &format!("type = {}", listed(&documented_types("[[emitter]]"), "\"")),
     );
     expect(
         &emitter("«[[emitter]]\ntype = \"isotropic\"\nflux_lm = 1"),
@@ -203,24 +223,25 @@ fn directions() {
 
 #[test]
 fn materials() {
+    let types = listed(&documented_types("[material.NAME]"), "");
     expect(
         &material("[material.black]\ntype = «\"conductor\"\nfile = \"x\""),
         Kind::Unavailable,
         "type = \"conductor\"",
-        "dielectric, mirror, lambertian, absorber or tabulated; conductor is not available yet",
+        &format!("{types}; conductor is not available yet"),
     );
     let error = expect(
         &material("[material.black]\ntype = «\"Absorbr\""),
         Kind::Unknown,
         "type = \"Absorbr\"",
-        "dielectric, mirror, lambertian, absorber or tabulated",
+        &types,
     );
     assert_eq!(error.advice(), Some("did you mean \"absorber\"?"));
     expect(
         &material("[material.«black]"),
         Kind::Missing,
         "a [material.NAME] without `type`",
-        "type = \"dielectric\", \"mirror\", \"lambertian\", \"absorber\" or \"tabulated\"",
+        &format!("type = {}", listed(&documented_types("[material.NAME]"), "\"")),
     );
     let ior = "a refractive index from 0.001 to 1000";
     for bad in ["0", "-1.5", "nan", "inf", "1e-9", "1e9"] {
