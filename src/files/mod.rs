@@ -7,13 +7,16 @@ pub mod bsdf;
 pub mod bytes;
 mod excerpt;
 pub mod exr;
+pub mod folder;
 pub mod height_image;
 pub mod lm63;
 mod mesh_formats;
 pub mod obj;
 mod obj_text;
+pub mod outputs;
 pub mod parts;
 pub mod photon_map;
 #[cfg(feature = "plots")]
 pub mod png;
 pub mod scene_toml;
+pub mod set;

@@ -80,11 +80,7 @@ impl RunReport {
         let rejects = algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
-            scene: SceneReport {
-                path: scene.identity.name.clone(),
-                sha256: scene.identity.sha256.clone(),
-                files: scene.identity.files.iter().cloned().collect(),
-            },
+            scene: SceneReport::new(scene),
             variant: algorithm.variant.name(),
             sequence: algorithm.sequence.name(),
             solver: (!rejects).then(|| algorithm.solver.name()),
@@ -104,6 +100,17 @@ pub struct SceneReport {
     pub sha256: String,
     /// SHA-256 of the files it names, by the path written there.
     pub files: BTreeMap<String, String>,
+}
+
+impl SceneReport {
+    /// Of this scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            path: scene.identity.name.clone(),
+            sha256: scene.identity.sha256.clone(),
+            files: scene.identity.files.iter().cloned().collect(),
+        }
+    }
 }
 
 /// Times of a report.

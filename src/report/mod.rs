@@ -11,6 +11,7 @@ pub mod ply;
 pub mod picture;
 pub mod camera;
 pub mod json;
+pub mod vouched;
 pub mod saved;
 pub mod text;
 pub mod photometry;

@@ -12,5 +12,8 @@ mod contract;
 mod interrupts;
 mod outputs;
 mod picture;
+mod result_set;
+#[cfg(unix)]
+mod result_set_cut;
 mod results_kept;
 mod sample;

@@ -120,7 +120,16 @@ fn a_report_has_the_keys_of_the_contract_and_balances() {
             "receivers",
             "stopped_by",
         ],
-        &["photons_planned", "solver", "standard_error_absent", "ledger_photons", "exceptions", "warnings"],
+        &[
+            "photons_planned",
+            "solver",
+            "standard_error_absent",
+            "ledger_photons",
+            "exceptions",
+            "warnings",
+            "files",
+            "files_bytes",
+        ],
     );
     assert_keys(&report["scene"], &["path", "sha256"], &["files"]);
     assert_keys(&report["time"], &["trace_s", "total_s", "photons_per_s"], &[]);
@@ -249,5 +258,6 @@ fn every_scene_passes_check_without_warnings_and_lights_every_receiver() {
                 assert!(fs::metadata(s.path("out").join(file.as_str().unwrap())).unwrap().len() > 0);
             }
         }
+        fs::remove_dir_all(s.path("out")).unwrap();
     }
 }

@@ -23,3 +23,4 @@ pub mod sphere_table;
 pub mod statistics;
 pub mod stranger;
 pub mod tables;
+pub mod vouched;
