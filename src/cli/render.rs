@@ -9,7 +9,6 @@ use crate::files::folder::{Folder, LOCK};
 use crate::files::outputs::{check_outputs, entry};
 use crate::files::scene_toml::{self, RunDefaults};
 use crate::files::set::Set;
-use crate::geometry::Shape;
 use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture, warnings as seen_wrong};
 use crate::plot;
 use crate::report::camera::CameraReport;
@@ -19,6 +18,7 @@ use crate::report::ply::write_ply;
 use crate::report::saved::SavedReport;
 use crate::report::statistics::ReceiverStatistics;
 use crate::report::vouched::vouching;
+use crate::report::vtp::write_vtp;
 use crate::report::{maps, text};
 use crate::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use crate::scene::Scene;
@@ -93,7 +93,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
-        print(&results::written_to(&written));
+        print(&results::written_to(folder, &written));
     }
     // What was known before is said before.
     let said = |warning: &&Warning| warning.code == "scene" || scene.found.contains(warning);
@@ -119,7 +119,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
 /// Every file that a run is to write.
 fn outputs(args: &RenderArgs, scene: &Scene) -> Vec<PathBuf> {
     let of_receiver = |receiver: &Receiver| {
-        let names = endings(scene, receiver).iter().map(|ending| format!("{}.{ending}", receiver.name));
+        let names = endings(receiver).iter().map(|ending| format!("{}.{ending}", receiver.name));
         names.collect::<Vec<_>>()
     };
     let of_camera = scene.camera.iter().flat_map(|spec| picture::files(spec));
@@ -152,12 +152,11 @@ pub(super) fn strictly<'a>(is_strict: bool, done: u8, said: impl IntoIterator<It
 }
 
 /// What is written of a receiver, by the endings of the files.
-fn endings(scene: &Scene, receiver: &Receiver) -> &'static [&'static str] {
-    let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
-    match (receiver.cells, shape) {
-        (Cells::Grid { .. }, _) => &["exr", "png"],
-        (Cells::Faces { .. }, Shape::Mesh(_)) => &["exr", "csv", "ply"],
-        (Cells::Faces { .. }, _) => &["exr", "csv"],
+fn endings(receiver: &Receiver) -> &'static [&'static str] {
+    match receiver.cells {
+        Cells::Grid { .. } if maps::has_csv(receiver) => &["exr", "png", "csv"],
+        Cells::Grid { .. } => &["exr", "png"],
+        Cells::Faces { .. } => &["exr", "csv", "ply", "vtp"],
     }
 }
 
@@ -170,13 +169,14 @@ fn write_receiver(
     s: &ReceiverStatistics,
 ) -> Vec<String> {
     let mut made = Vec::new();
-    for ending in endings(scene, receiver) {
+    for ending in endings(receiver) {
         let name = format!("{}.{ending}", receiver.name);
         let is_made = set.add(&name, |path| match *ending {
             "exr" => maps::write_exr(path, scene, outcome, receiver, s).map(|()| true),
             "png" => plot::maps::write_png(path, outcome, receiver, s),
             "csv" => maps::write_csv(path, scene, receiver, s),
-            _ => write_ply(path, scene, outcome, receiver, s),
+            "ply" => write_ply(path, scene, outcome, receiver, s),
+            _ => write_vtp(path, scene, outcome, receiver, s),
         });
         made.extend(is_made.then_some(name));
     }
@@ -241,7 +241,7 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
         print(&format!("scene      {name}\nphotons    those saved in {map}; "));
         print("none were traced, so receivers have no maps\n");
         print(&report.camera.text());
-        print(&results::written_to(&written));
+        print(&results::written_to(folder, &written));
     }
     if !written.errors.is_empty() {
         return Ok(exit::WRONG);

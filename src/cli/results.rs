@@ -38,11 +38,13 @@ pub fn tell(folder: &Folder, written: &Written, inputs: &[PathBuf]) {
     for error in &written.errors {
         say(&format!("error: {error}"));
     }
-    let (asked, directory) = (folder.path().display(), written.directory.display());
-    if written.directory != folder.path() {
-        say(&format!(
-            "caustix: the older results in {asked} are left as they were; the rest is in {directory}"
-        ));
+    let asked = folder.path().display();
+    if written.keeps_older {
+        let rest = match is_written(folder, written) {
+            true => format!("what could be written is in {}", written.directory.display()),
+            false => "nothing else could be written".to_string(),
+        };
+        say(&format!("caustix: the older results in {asked} are left as they were; {rest}"));
         return;
     }
     let ours: BTreeSet<String> = written.files.sha256.keys().cloned().collect();
@@ -54,9 +56,17 @@ pub fn tell(folder: &Folder, written: &Written, inputs: &[PathBuf]) {
 }
 
 /// Where results went, for the last line of a summary.
-pub fn written_to(written: &Written) -> String {
-    let but = if written.errors.is_empty() { "" } else { ", but for what is told above" };
-    format!("written to {}{but}\n", written.directory.display())
+pub fn written_to(folder: &Folder, written: &Written) -> String {
+    let directory = written.directory.display();
+    match (is_written(folder, written), written.errors.is_empty()) {
+        (false, _) => format!("nothing written to {directory}\n"),
+        (true, true) => format!("written to {directory}\n"),
+        (true, false) => format!("written to {directory}, but for what is told above\n"),
+    }
+}
+
+fn is_written(folder: &Folder, written: &Written) -> bool {
+    !written.keeps_older || written.directory != folder.path()
 }
 
 fn names(all: &[String]) -> String {

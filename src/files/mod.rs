@@ -3,6 +3,7 @@
 //! A reader gives the plain data of the room it serves; a writer takes it. Nothing else in the program opens a file.
 
 pub mod atomic;
+pub mod base64;
 pub mod bsdf;
 pub mod bytes;
 mod excerpt;

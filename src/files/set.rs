@@ -46,6 +46,8 @@ pub struct Set<'f> {
 pub struct Written {
     /// The folder that it is in.
     pub directory: PathBuf,
+    /// Whether older results were left where they are; then the folder is another, or nothing was written.
+    pub keeps_older: bool,
     /// Its files, without the list.
     pub files: Listed,
     /// What could not be written.
@@ -103,28 +105,22 @@ impl<'f> Set<'f> {
 
     /// Puts the set into its place. `list` makes the list's text of the files that are in the set.
     pub fn finish(mut self, list: impl Fn(&Listed) -> Result<String>) -> Written {
-        let mut is_listed = self.write_list(&list);
+        let is_listed = self.write_list(&list);
         let mut directory = self.folder.path().to_path_buf();
-        let has_older = directory.join(self.manifest).is_file();
-        // Holds the lock of `incomplete` until the files are there.
-        let mut beside = None;
-        if self.is_cut && has_older {
-            directory = directory.join(INCOMPLETE);
-            match Folder::take(&directory, "room for what could be written") {
-                Ok(folder) => beside = Some(folder),
-                Err(error) => {
-                    self.errors.push(error);
-                    self.files = Listed::default();
-                    is_listed = false;
+        let is_cut = self.is_cut && directory.join(self.manifest).is_file();
+        let keeps_older = is_cut || !self.take_place(&directory, is_listed, &list, &mut || true);
+        if keeps_older && (is_listed || !self.files.sha256.is_empty()) {
+            // With a lock of its own until the files are there.
+            match Folder::take(&directory.join(INCOMPLETE), "room for what could be written") {
+                Ok(beside) => {
+                    directory = beside.path().to_path_buf();
+                    self.take_place(&directory, is_listed, &list, &mut || true);
                 }
+                Err(error) => self.errors.push(error),
             }
         }
-        if !self.is_cut || !has_older || beside.is_some() {
-            self.take_place(&directory, is_listed, &list, &mut || true);
-        }
-        drop(beside);
         let (files, errors) = (std::mem::take(&mut self.files), std::mem::take(&mut self.errors));
-        Written { directory, files, errors }
+        Written { directory, keeps_older, files, errors }
     }
 
     fn write_list(&mut self, list: &impl Fn(&Listed) -> Result<String>) -> bool {
@@ -136,24 +132,24 @@ impl<'f> Set<'f> {
         }
     }
 
-    /// Renames all, the list last. `goes_on` is asked before each step: a test ends it there, as a kill would.
+    /// Renames all, the list last; false, and nothing is replaced, where an older list cannot go. `goes_on` is asked before each
+    /// step: a test ends it there, as a kill would.
     fn take_place(
         &mut self,
         directory: &Path,
         mut is_listed: bool,
         list: &impl Fn(&Listed) -> Result<String>,
         goes_on: &mut impl FnMut() -> bool,
-    ) {
+    ) -> bool {
         for old in self.outdated(directory) {
             if !goes_on() {
-                return;
+                return true;
             }
-            // Where it cannot go, nothing may be replaced.
             if let Err(error) = fs::remove_file(&old) {
                 let found = format!("\"{error}\" while removing the list of older results");
                 let error = Diagnostic::new(Kind::Io, found, "a file that can be replaced").in_file(&old);
                 self.errors.push(error);
-                return;
+                return false;
             }
         }
         // On the disk before any file is replaced: a list must not come back after a power cut.
@@ -161,7 +157,7 @@ impl<'f> Set<'f> {
         let names: Vec<String> = self.files.sha256.keys().cloned().collect();
         for name in names {
             if !goes_on() {
-                return;
+                return true;
             }
             let target = directory.join(&name);
             if let Err(error) = fs::rename(self.staging.join(&name), &target) {
@@ -175,7 +171,7 @@ impl<'f> Set<'f> {
         }
         synced(directory);
         if !is_listed || !goes_on() {
-            return;
+            return true;
         }
         let target = directory.join(self.manifest);
         if let Err(error) = fs::rename(self.staging.join(self.manifest), &target) {
@@ -183,6 +179,7 @@ impl<'f> Set<'f> {
             self.errors.push(Diagnostic::new(Kind::Io, found, "a file that can be replaced").in_file(target));
         }
         synced(directory);
+        true
     }
 
     /// Lists that would no longer be true: that of the set before, and of another that has a file of ours in it.
@@ -322,6 +319,13 @@ mod tests {
         let mut new = set(&folder, &[NEW[0]]);
         cut(&mut new);
         assert_eq!(new.finish(list).directory, directory.path());
+        assert_eq!(vouched(directory.path()), texts(&[NEW[0]]));
+        // Where not even the list can be made, nothing is.
+        let mut new = Set::new(&folder, REPORT).unwrap();
+        cut(&mut new);
+        let nothing = |_: &Listed| Err(Diagnostic::new(Kind::Io, "a full disk", "room"));
+        let written = new.finish(nothing);
+        assert!(written.keeps_older && written.errors.len() == 2);
         assert_eq!(vouched(directory.path()), texts(&[NEW[0]]));
     }
 

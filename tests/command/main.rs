@@ -10,6 +10,7 @@ mod check;
 mod contract;
 #[cfg(unix)]
 mod interrupts;
+mod maps_open;
 mod outputs;
 mod picture;
 mod result_set;

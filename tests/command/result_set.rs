@@ -40,7 +40,11 @@ fn a_report_vouches_for_every_file_and_another_is_found() {
     fs::remove_file(out.join("plate.exr")).unwrap();
     assert_eq!(found(&out, REPORT), Found::Mixed(vec!["plate.exr".into()]));
     // Seen again, from the photons that lie in the same folder: they are an input, and stay.
-    s.is_told("render seen.toml -o out --photons 2^12 --map out/photons.map", 0, &["out also holds a file"]);
+    s.is_told(
+        "render seen.toml -o out --photons 2^12 --map out/photons.map",
+        0,
+        &["out also holds files", ": plate.csv, plate.png\n"],
+    );
     assert!(whole(&out, REPORT).contains("camera.exr") && out.join("photons.map").is_file());
 }
 
@@ -70,7 +74,15 @@ fn a_study_has_a_list_of_its_own_beside_that_of_a_run() {
 
 #[test]
 fn every_file_that_cannot_be_written_costs_itself_alone() {
-    let files = ["plate.exr", "plate.png", "camera.exr", "camera.png", "camera_luminance.png", "photons.map"];
+    let files = [
+        "plate.exr",
+        "plate.png",
+        "plate.csv",
+        "camera.exr",
+        "camera.png",
+        "camera_luminance.png",
+        "photons.map",
+    ];
     for bad in files.into_iter().chain([REPORT]) {
         let s = stranger();
         let out = s.path("out");
@@ -191,9 +203,9 @@ fn files_of_other_runs_are_told_in_one_line_and_left() {
     let (code, _, err) = s.types("render scene.toml -o out --photons 2^10 --quiet");
     let told: Vec<&str> = err.lines().collect();
     assert_eq!((code, told.len()), (0, 1), "{err}");
-    assert!(told[0].contains("out also holds files that this run did not write: r0.exr, "), "{err}");
-    // Seven receivers with an EXR and a PNG each, five names told.
-    assert!(told[0].ends_with("and 9 more"), "{err}");
+    assert!(told[0].contains("out also holds files that this run did not write: r0.csv, "), "{err}");
+    // Seven receivers with an EXR, a PNG and a CSV each, five names told.
+    assert!(told[0].ends_with("and 16 more"), "{err}");
     assert!(s.path("out/r6.exr").is_file() && s.path("out/notes.txt").is_file());
-    assert_eq!(whole(&s.path("out"), REPORT).len(), 3);
+    assert_eq!(whole(&s.path("out"), REPORT).len(), 4);
 }

@@ -42,7 +42,7 @@ fn killed_at_any_moment_a_run_leaves_no_mixture_that_a_report_vouches_for() {
                 "old set"
             }
             Found::Whole(names) => {
-                assert_eq!((names.len(), &s.report("out")["seed"]), (62, &k.into()));
+                assert_eq!((names.len(), &s.report("out")["seed"]), (93, &k.into()));
                 "new set"
             }
             Found::Mixed(others) => panic!("kill {k}: {others:?}"),
@@ -83,7 +83,7 @@ fn no_longer_than(blocks: u32) -> String {
 fn a_disk_that_takes_no_more_leaves_the_older_set_as_it_was() {
     let s = Stranger::with(&[("scene.toml", SCENE)]);
     s.is_told("render scene.toml -o out --photons 2^12 --quiet", 0, &[]);
-    let files = ["plate.exr", "plate.png", REPORT];
+    let files = ["plate.exr", "plate.png", "plate.csv", REPORT];
     let all = |folder: &str| files.map(|name| fs::read(s.path(folder).join(name)).ok());
     let before = all("out");
     let lengths = before.each_ref().map(|bytes| bytes.as_ref().unwrap().len());
@@ -93,7 +93,7 @@ fn a_disk_that_takes_no_more_leaves_the_older_set_as_it_was() {
         let output = shell(&s, &no_longer_than(blocks), line, "");
         let err = String::from_utf8_lossy(&output.stderr);
         if output.status.success() {
-            assert_eq!(whole(&s.path("out"), REPORT).len(), 3);
+            assert_eq!(whole(&s.path("out"), REPORT).len(), 4);
             s.is_told("render scene.toml -o out --photons 2^12 --quiet", 0, &[]);
             assert_eq!(all("out")[0], before[0]);
             continue;
@@ -101,17 +101,17 @@ fn a_disk_that_takes_no_more_leaves_the_older_set_as_it_was() {
         assert_eq!(output.status.code(), Some(1), "{err}");
         let named = files.iter().filter(|name| err.contains(&format!("error: out/{name}: "))).count();
         assert!(named > 0 && err.contains("are left as they were"), "{blocks}: {err}");
-        assert_eq!(all("out")[..2], before[..2]);
+        assert_eq!(all("out")[..3], before[..3]);
         assert!(matches!(found(&s.path("out"), REPORT), Found::Whole(_)));
         // What fitted stands beside.
         let beside = s.path("out/incomplete");
         assert!(!matches!(found(&beside, REPORT), Found::Mixed(_)));
-        assert_eq!(all("out/incomplete").iter().flatten().count(), 3 - named, "{err}");
+        assert_eq!(all("out/incomplete").iter().flatten().count(), 4 - named, "{err}");
         if beside.exists() {
             fs::remove_dir_all(&beside).unwrap();
         }
         let expected = names(&s.path("out"));
-        assert_eq!(expected.len(), 3, "{expected:?}");
+        assert_eq!(expected.len(), 4, "{expected:?}");
     }
 }
 

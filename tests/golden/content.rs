@@ -49,6 +49,8 @@ pub fn parts(path: &Path) -> Option<Parts> {
         "csv" => Some(csv(&text())),
         "json" => Some(json(&serde_json::from_str(&text()).unwrap())),
         "ply" => Some(ply(&read())),
+        // After the comment, which names the version and the scene's hash.
+        "vtp" => Some(vec![("body".into(), hash(text().split_once("-->").unwrap().1.as_bytes()))]),
         "png" => Some(png(path)),
         "svg" => Some(vec![("text".into(), hash(&read()))]),
         // compare.md: its tables are those of compare.csv, with times between them; photons as saved: a

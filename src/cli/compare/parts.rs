@@ -130,7 +130,7 @@ pub fn write_study(
     results::tell(&kept.folder, &written, &results::inputs(args.scene.as_deref(), scene));
     if !args.quiet {
         print(text);
-        print(&results::written_to(&written));
+        print(&results::written_to(&kept.folder, &written));
     }
     Ok(written.errors.is_empty())
 }
