@@ -46,7 +46,7 @@
 //! # Features
 //!
 //! `cli` (default): the command `caustix`. `plots` (default): drawings, maps as PNG. Without either the library reads, traces
-//! and writes EXR, CSV, PLY and JSON.
+//! and writes EXR, CSV, PLY, VTP and JSON.
 
 // What only the command uses is dead without it; the build with the command denies dead code.
 #![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
@@ -127,6 +127,7 @@ pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
 pub use report::statistics::ReceiverStatistics;
 pub use report::text::summary;
+pub use report::vtp::write_vtp as write_map_vtp;
 // Studies:
 pub use lab::certificate::{Certificate, Judge};
 pub use lab::study::cells::Grids;

@@ -2,6 +2,7 @@
 
 mod args;
 mod progress;
+mod results;
 mod picture;
 mod render;
 mod photometry;
@@ -10,14 +11,16 @@ mod compare;
 mod sample;
 mod bsdf;
 
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::outputs::check_outputs;
 use crate::files::scene_toml::count::parse_count;
 use crate::plot::drawing::Drawing;
 use crate::run::Algorithm;
@@ -101,9 +104,12 @@ pub fn main() -> ExitCode {
     let done = match parsed.map_err(with_hint) {
         Err(error) => {
             // Help and version are no errors; clap writes either to where it belongs.
-            let code = if error.use_stderr() { exit::USAGE } else { exit::DONE };
-            let _printed = error.print();
-            return ExitCode::from(code);
+            if !error.use_stderr() {
+                printed(error.print());
+            } else {
+                let _printed = error.print();
+            }
+            Ok(if error.use_stderr() { exit::USAGE } else { exit::DONE })
         }
         Ok(Sub::Render(args)) => render::run(&args),
         Ok(Sub::Photometry(args)) => photometry::run(&args),
@@ -112,19 +118,32 @@ pub fn main() -> ExitCode {
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
     };
-    ExitCode::from(done.unwrap_or_else(|errors| fail(&errors)))
+    let code = done.unwrap_or_else(|errors| fail(&errors));
+    ExitCode::from(if CUT.load(Ordering::Relaxed) { exit::WRONG } else { code })
 }
+
+/// Set where stdout did not take what was printed.
+static CUT: AtomicBool = AtomicBool::new(false);
 
 /// A line to stderr; a closed stderr is no reason to fail.
 #[allow(clippy::print_stderr)]
 fn say(line: &str) {
-    let _written = writeln!(std::io::stderr(), "{line}");
+    let _written = writeln!(io::stderr(), "{line}");
 }
 
-/// Text to stdout. A reader that has gone away (a closed pipe) is no reason to fail.
+/// Text to stdout. A reader that has gone away (a closed pipe) is no reason to fail; a full disk is, and is told once.
 fn print(text: &str) {
-    let mut out = std::io::stdout().lock();
-    let _written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    let mut out = io::stdout().lock();
+    printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+}
+
+fn printed(outcome: io::Result<()>) {
+    let Err(error) = outcome else { return };
+    if error.kind() != io::ErrorKind::BrokenPipe && !CUT.swap(true, Ordering::Relaxed) {
+        let found = format!("\"{error}\" while writing to stdout");
+        let diagnostic = Diagnostic::new(Kind::Io, found, "a stdout that takes what is printed");
+        say(&format!("error: {diagnostic}"));
+    }
 }
 
 /// Says errors and gives the exit code for them.
@@ -166,8 +185,9 @@ fn algorithm(default: Algorithm, variant: Option<&String>, sequence: Option<&Str
     Ok(algorithm)
 }
 
-/// Writes a drawing where `--plot` asks for one; the ending of the name says as what.
-fn plot(path: Option<&PathBuf>, drawing: impl FnOnce() -> Drawing) -> Result<()> {
+/// Writes a drawing of what a file holds where `--plot` asks for one; the ending of the name says as what.
+fn plot(path: Option<&PathBuf>, of: &Path, drawing: impl FnOnce() -> Drawing) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
+    check_outputs(std::slice::from_ref(path), &[of.to_path_buf()])?;
     drawing().write(path).map_err(|e| if e.kind() == Kind::Range { in_option("--plot ", &e) } else { e })
 }

@@ -12,7 +12,7 @@ use super::{Done, PhotometryArgs, exit, plot, print, warn};
 pub(super) fn run(args: &PhotometryArgs) -> Done {
     let photometry = lm63::read(&args.file)?;
     let summary = Summary::new(&photometry);
-    plot(args.plot.as_ref(), || candela::drawing(&photometry, &summary))?;
+    plot(args.plot.as_ref(), &args.file, || candela::drawing(&photometry, &summary))?;
     if args.json {
         print(&json(&summary)?);
     } else {

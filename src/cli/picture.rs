@@ -7,6 +7,7 @@ use crate::files::atomic::write_atomically;
 use crate::files::bytes::read_capped;
 use crate::files::exr::Value;
 use crate::files::photon_map;
+use crate::files::set::Set;
 use crate::picture;
 use crate::picture::camera::Film;
 use crate::picture::photon_map::SavedMap;
@@ -19,6 +20,11 @@ use crate::scene::Scene;
 use crate::scene::camera::{CameraSpec, Method};
 
 use super::RenderArgs;
+
+/// The camera's files.
+const EXR: &str = "camera.exr";
+const PNG: &str = "camera.png";
+const LUMINANCE: &str = "camera_luminance.png";
 
 /// Largest photon map that is read: 64 GiB.
 const MOST_MAP_BYTES: u64 = 64 << 30;
@@ -92,39 +98,45 @@ fn save_map<const C: usize>(path: &Path, Picture { summary, photons, .. }: &Pict
     write_atomically(path, |out| photon_map::write(map, out))
 }
 
-/// Writes the camera's files into a directory that exists, and says what they are.
-///
-/// # Errors
-/// A file that cannot be written; files written before it stay.
+/// Names of the camera's files.
+pub(super) fn files(spec: &CameraSpec) -> Vec<String> {
+    let names = [Some(EXR), Some(PNG), spec.false_colour.then_some(LUMINANCE)];
+    names.into_iter().flatten().map(str::to_string).collect()
+}
+
+/// Makes the camera's files, and says which there are.
 pub(super) fn write(
-    directory: &Path,
+    set: &mut Set<'_>,
     scene: &Scene,
     plan: &Plan,
     spec: &CameraSpec,
     picture: &AnyPicture,
-) -> Result<CameraReport> {
+) -> CameraReport {
     let summary = picture.summary();
     let attributes = camera_attributes(scene, plan, summary.photons, summary.replicates, spec);
     let files = match picture {
-        AnyPicture::Grey(picture) => write_film(directory, spec, &picture.film, &attributes)?,
-        AnyPicture::Rgb(picture) => write_film(directory, spec, &picture.film, &attributes)?,
+        AnyPicture::Grey(picture) => write_film(set, spec, &picture.film, &attributes),
+        AnyPicture::Rgb(picture) => write_film(set, spec, &picture.film, &attributes),
     };
-    Ok(CameraReport::new(spec, summary, &files))
+    CameraReport::new(spec, summary, &files)
 }
 
 fn write_film<const C: usize>(
-    directory: &Path,
+    set: &mut Set<'_>,
     spec: &CameraSpec,
     film: &Film<C>,
     attributes: &[(String, Value)],
-) -> Result<Vec<String>> {
-    let mut files = vec!["camera.exr".to_string(), "camera.png".to_string()];
-    write_exr(&directory.join(&files[0]), spec, film, attributes)?;
-    write_png(&directory.join(&files[1]), spec, film)?;
-    if spec.false_colour {
-        let file = "camera_luminance.png".to_string();
-        write_luminance_png(&directory.join(&file), "camera", spec, film)?;
-        files.push(file);
-    }
-    Ok(files)
+) -> Vec<String> {
+    let mut made = files(spec);
+    made.retain(|name| {
+        set.add(name, |path| {
+            match name.as_str() {
+                EXR => write_exr(path, spec, film, attributes),
+                PNG => write_png(path, spec, film),
+                _ => write_luminance_png(path, "camera", spec, film),
+            }
+            .map(|()| true)
+        })
+    });
+    made
 }

@@ -5,27 +5,31 @@ use std::time::Instant;
 
 use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::{make_directory, write_bytes};
+use crate::files::folder::{Folder, LOCK};
+use crate::files::outputs::{check_outputs, entry};
 use crate::files::scene_toml::{self, RunDefaults};
+use crate::files::set::Set;
 use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture, warnings as seen_wrong};
 use crate::plot;
 use crate::report::camera::CameraReport;
-use crate::report::json::{Report, json};
+use crate::report::json::Report;
 use crate::report::numbers::grouped;
 use crate::report::ply::write_ply;
 use crate::report::saved::SavedReport;
 use crate::report::statistics::ReceiverStatistics;
+use crate::report::vouched::vouching;
+use crate::report::vtp::write_vtp;
 use crate::report::{maps, text};
 use crate::run::{Outcome, Plan, Settings, StoppedBy, trace};
 use crate::scene::Scene;
-use crate::scene::receiver::Receiver;
+use crate::scene::receiver::{Cells, Receiver};
 
 use super::args::MAX_THREADS;
 use super::progress::{INTERRUPTED, catch_interrupts, progress_bar};
-use super::{Done, RenderArgs, algorithm, count, exit, picture, print, say, warn};
+use super::{Done, RenderArgs, algorithm, count, exit, picture, print, results, say, warn};
 
-/// What the directory of a run is for.
-pub(super) const FOR_RESULTS: &str = "a directory for the results";
+/// The list of a run's files.
+const REPORT: &str = "report.json";
 
 /// Reads and builds a scene; without a path the built-in one.
 pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
@@ -46,37 +50,36 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     picture::check(args, &scene)?;
     let asked = count("--photons", args.photons.as_ref())?.or(run.photons);
     let plan = plan(args, &run, asked)?;
+    catch_interrupts();
     if let Some(map) = &args.map {
-        catch_interrupts();
         return seen_again(args, map, &scene, &plan, started);
     }
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
-    make_directory(&args.output, FOR_RESULTS)?;
+    let folder = results::take(&args.output)?;
+    let inputs = results::inputs(args.scene.as_deref(), &scene);
+    check_outputs(&outputs(args, &scene), &inputs)?;
     say_rounding(asked, &plan);
-    catch_interrupts();
     let (outcome, picture) = traced(args, &scene, &plan)?;
     let unseen = picture.as_ref().map_or(0, |picture| picture.summary().pixels_unseen);
     let interrupted = outcome.stopped_by == StoppedBy::Interrupt;
-    let directory = beside_earlier(&args.output, interrupted || unseen > 0, |photons| {
+    let beside = beside_earlier(&folder, interrupted || unseen > 0, |photons| {
         photons > outcome.photons || (unseen > 0 && photons == outcome.photons)
     })?;
+    let folder = beside.as_ref().unwrap_or(&folder);
     let receivers = scene.receivers.iter().enumerate();
     let statistics: Vec<_> = receivers.map(|(i, r)| ReceiverStatistics::new(&outcome, r, i)).collect();
-    // A file that cannot be written must not cost the others: its error is told at the end.
-    let (mut files, mut unwritten) = (Vec::new(), Vec::new());
+    let mut set = Set::new(folder, REPORT)?;
+    let mut files = Vec::new();
     for (receiver, s) in scene.receivers.iter().zip(&statistics) {
-        let written = write_receiver(&directory, &scene, &outcome, receiver, s);
-        files.push(written.map_err(|e| unwritten.push(e)).unwrap_or_default());
+        files.push(write_receiver(&mut set, &scene, &outcome, receiver, s));
     }
     let mut camera = None;
+    let mut unsaved = None;
     if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
-        let written = picture::write(&directory, &scene, &plan, spec, picture);
-        camera = written.map_err(|e| unwritten.push(e)).ok();
+        camera = Some(picture::write(&mut set, &scene, &plan, spec, picture));
         // Of a whole run: part of one would not be what the settings say.
         match &args.save_map {
-            Some(path) if outcome.stopped_by == StoppedBy::Photons => {
-                unwritten.extend(picture::save(path, picture).err());
-            }
+            Some(path) if !interrupted => unsaved = save_map(&mut set, &args.output, path, picture),
             Some(_) => say("caustix: interrupted, so the photons are not saved"),
             None => {}
         }
@@ -84,29 +87,58 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let total_s = started.elapsed().as_secs_f64();
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
     report.see(camera, picture.as_ref().map_or(Vec::new(), |picture| seen_wrong(&scene, picture.summary())));
-    unwritten.extend(write_report(&directory, &report).err());
+    let mut written = set.finish(|files| vouching(&report, files));
+    written.errors.extend(unsaved);
+    results::tell(folder, &written, &inputs);
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
-        print(&format!("written to {}\n", directory.display()));
+        print(&results::written_to(folder, &written));
     }
     // What was known before is said before.
     let said = |warning: &&Warning| warning.code == "scene" || scene.found.contains(warning);
     report.warnings.iter().filter(|warning| !said(warning)).for_each(say_found);
-    if !unwritten.is_empty() {
-        return Err(unwritten);
-    }
+    let shown = written.directory.display();
     if interrupted {
         say(&format!(
-            "caustix: interrupted after {} of {} photons; what there is was written to {}",
+            "caustix: interrupted after {} of {} photons; what there is was written to {shown}",
             grouped(outcome.photons),
             grouped(plan.photons()),
-            directory.display()
         ));
+    }
+    if !written.errors.is_empty() {
+        return Ok(exit::WRONG);
+    }
+    if interrupted {
         return Ok(exit::INTERRUPTED);
     }
-    let seen = seen_wholly(unseen, &directory);
+    let seen = seen_wholly(unseen, &written.directory);
     Ok(strictly(args.strict, seen, &report.warnings))
+}
+
+/// Every file that a run is to write.
+fn outputs(args: &RenderArgs, scene: &Scene) -> Vec<PathBuf> {
+    let of_receiver = |receiver: &Receiver| {
+        let names = endings(receiver).iter().map(|ending| format!("{}.{ending}", receiver.name));
+        names.collect::<Vec<_>>()
+    };
+    let of_camera = scene.camera.iter().flat_map(|spec| picture::files(spec));
+    // A --map gives no maps of receivers.
+    let of_receivers = scene.receivers.iter().filter(|_| args.map.is_none()).flat_map(of_receiver);
+    let names = of_receivers.chain(of_camera).chain([REPORT.to_string(), LOCK.to_string()]);
+    names.map(|name| args.output.join(name)).chain(args.save_map.clone()).collect()
+}
+
+/// Saves the photons: in the folder of the results as one of them, elsewhere by themselves; what went wrong there.
+fn save_map(set: &mut Set<'_>, output: &Path, path: &Path, picture: &AnyPicture) -> Option<Diagnostic> {
+    let name = path.file_name().and_then(|name| name.to_str());
+    match name.filter(|name| entry(&output.join(name)) == entry(path)) {
+        Some(name) => {
+            set.add(name, |path| picture::save(path, picture).map(|()| true));
+            None
+        }
+        None => picture::save(path, picture).err(),
+    }
 }
 
 pub(super) fn say_found(warning: &Warning) {
@@ -119,24 +151,36 @@ pub(super) fn strictly<'a>(is_strict: bool, done: u8, said: impl IntoIterator<It
     if done == exit::DONE && is_strict && is_untrusted { exit::UNTRUSTED } else { done }
 }
 
-/// Writes the files of one receiver; their names. Files written before one that cannot be stay.
+/// What is written of a receiver, by the endings of the files.
+fn endings(receiver: &Receiver) -> &'static [&'static str] {
+    match receiver.cells {
+        Cells::Grid { .. } if maps::has_csv(receiver) => &["exr", "png", "csv"],
+        Cells::Grid { .. } => &["exr", "png"],
+        Cells::Faces { .. } => &["exr", "csv", "ply", "vtp"],
+    }
+}
+
+/// Makes the files of one receiver; the names of those that could be.
 fn write_receiver(
-    directory: &Path,
+    set: &mut Set<'_>,
     scene: &Scene,
     outcome: &Outcome,
     receiver: &Receiver,
     s: &ReceiverStatistics,
-) -> Result<Vec<String>> {
-    let names = ["exr", "png", "csv", "ply"].map(|ending| format!("{}.{ending}", receiver.name));
-    let [exr, png, csv, ply] = names.each_ref().map(|name| directory.join(name));
-    maps::write_exr(&exr, scene, outcome, receiver, s)?;
-    let written = [
-        true,
-        plot::maps::write_png(&png, outcome, receiver, s)?,
-        maps::write_csv(&csv, scene, receiver, s)?,
-        write_ply(&ply, scene, outcome, receiver, s)?,
-    ];
-    Ok(names.into_iter().zip(written).filter_map(|(name, written)| written.then_some(name)).collect())
+) -> Vec<String> {
+    let mut made = Vec::new();
+    for ending in endings(receiver) {
+        let name = format!("{}.{ending}", receiver.name);
+        let is_made = set.add(&name, |path| match *ending {
+            "exr" => maps::write_exr(path, scene, outcome, receiver, s).map(|()| true),
+            "png" => plot::maps::write_png(path, outcome, receiver, s),
+            "csv" => maps::write_csv(path, scene, receiver, s),
+            "ply" => write_ply(path, scene, outcome, receiver, s),
+            _ => write_vtp(path, scene, outcome, receiver, s),
+        });
+        made.extend(is_made.then_some(name));
+    }
+    made
 }
 
 /// The exit code of a picture of which an interrupt left so many pixels unseen.
@@ -173,35 +217,43 @@ fn say_rounding(asked: Option<u64>, plan: &Plan) {
 /// The camera's picture of saved photons, and nothing else.
 fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started: Instant) -> Done {
     let Some(spec) = &scene.camera else { return Ok(exit::DONE) };
+    let mut inputs = results::inputs(args.scene.as_deref(), scene);
+    inputs.push(map.to_path_buf());
+    let folder = results::take(&args.output)?;
+    check_outputs(&outputs(args, scene), &inputs)?;
     let picture = if scene.is_coloured() {
         AnyPicture::Rgb(of_saved(args, map, scene, plan)?)
     } else {
         AnyPicture::Grey(of_saved(args, map, scene, plan)?)
     };
     let unseen = picture.summary().pixels_unseen;
-    let directory = beside_earlier(&args.output, unseen > 0, |_| true)?;
-    let camera = picture::write(&directory, scene, plan, spec, &picture)?;
+    let beside = beside_earlier(&folder, unseen > 0, |_| true)?;
+    let folder = beside.as_ref().unwrap_or(&folder);
+    let mut set = Set::new(folder, REPORT)?;
+    let camera = picture::write(&mut set, scene, plan, spec, &picture);
     let said = seen_wrong(scene, picture.summary());
     let report = SavedReport::new(scene, plan, map, (camera, &said), started.elapsed().as_secs_f64());
-    write_report(&directory, &report)?;
+    let written = set.finish(|files| vouching(&report, files));
     said.iter().for_each(say_found);
+    results::tell(folder, &written, &inputs);
     if !args.quiet {
         let (name, map) = (&scene.identity.name, map.display());
         print(&format!("scene      {name}\nphotons    those saved in {map}; "));
         print("none were traced, so receivers have no maps\n");
         print(&report.camera.text());
-        print(&format!("written to {}\n", directory.display()));
+        print(&results::written_to(folder, &written));
     }
-    let seen = seen_wholly(unseen, &directory);
+    if !written.errors.is_empty() {
+        return Ok(exit::WRONG);
+    }
+    let seen = seen_wholly(unseen, &written.directory);
     Ok(strictly(args.strict, seen, said.iter().chain(&scene.found)))
 }
 
 /// The picture of photons from a file.
 fn of_saved<const C: usize>(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan) -> Result<Picture<C>> {
     let pool = thread_pool(args.threads)?;
-    // A map that is refused leaves no directory behind.
     let saved = picture::read(map, scene, plan)?;
-    make_directory(&args.output, FOR_RESULTS)?;
     let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
     pool.install(|| picture_of_saved(scene, plan, saved, watch))
 }
@@ -240,23 +292,14 @@ pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
     })
 }
 
-/// The directory that was asked for, but for interrupted results that would replace those of `more` photons there: they go
-/// into `interrupted/` beside them.
-fn beside_earlier(output: &Path, interrupted: bool, more: impl Fn(u64) -> bool) -> Result<PathBuf> {
+/// The folder `interrupted` beside results of `more` photons, which interrupted ones would replace; `None` where there are none.
+fn beside_earlier(folder: &Folder, interrupted: bool, more: impl Fn(u64) -> bool) -> Result<Option<Folder>> {
     let earlier = || {
-        let text = std::fs::read_to_string(output.join("report.json")).ok()?;
+        let text = std::fs::read_to_string(folder.path().join(REPORT)).ok()?;
         serde_json::from_str::<serde_json::Value>(&text).ok()?.get("photons")?.as_u64()
     };
     if !interrupted || !earlier().is_some_and(more) {
-        return Ok(output.to_path_buf());
+        return Ok(None);
     }
-    let beside = output.join("interrupted");
-    make_directory(&beside, FOR_RESULTS)?;
-    Ok(beside)
-}
-
-fn write_report(directory: &Path, report: &impl serde::Serialize) -> Result<()> {
-    let path = directory.join("report.json");
-    let text = json(report).map_err(|e| e.in_file(&path))?;
-    write_bytes(&path, text.as_bytes())
+    results::take(&folder.path().join("interrupted")).map(Some)
 }

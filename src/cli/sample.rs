@@ -10,6 +10,7 @@ use crate::emitter::photometric::grid_axes;
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
 use crate::files::lm63;
+use crate::files::outputs::check_outputs;
 use crate::files::scene_toml::count::parse_count;
 use crate::lab::certificate::density::file_angles_deg;
 use crate::lab::certificate::sampler::{Effort, Sampled, made_from, sample};
@@ -44,6 +45,7 @@ fn certify(args: &SampleArgs) -> Result<CertificateReport> {
     let number = parse_count(&args.samples).map_err(|e| in_option("-n ", &e))?;
     let algorithm = algorithm(Algorithm::default(), args.variant.as_ref(), args.sequence.as_ref())?;
     let photometry = lm63::read(&args.file)?;
+    check_outputs(args.output.as_slice(), std::slice::from_ref(&args.file))?;
     if !args.json {
         warn(&photometry.warnings);
     }

@@ -86,6 +86,13 @@ impl Diagnostic {
         self
     }
 
+    /// The same, in this file instead of the one where it was found: of a file that is made elsewhere and then renamed.
+    #[must_use]
+    pub(crate) fn moved_to(mut self, file: impl AsRef<Path>) -> Self {
+        self.0.file = Some(file.as_ref().display().to_string());
+        self
+    }
+
     /// The same, at this line and column, both counted from 1.
     #[must_use]
     pub fn at(mut self, line: usize, column: usize) -> Self {

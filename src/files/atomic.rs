@@ -1,6 +1,6 @@
 //! Files that are either the old ones or the new ones, never a half of something.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -46,18 +46,14 @@ pub fn make_directory(path: &Path, required: &str) -> Result<()> {
     })
 }
 
-/// Writes several texts into a directory that is there: paths of those written, and what went wrong with the others. One that
-/// cannot be written keeps no other from being.
-pub fn write_each(directory: &Path, files: &[(&str, String)]) -> (Vec<PathBuf>, Vec<Diagnostic>) {
-    let (mut written, mut errors) = (Vec::new(), Vec::new());
-    for (name, content) in files {
-        let path = directory.join(name);
-        match write_bytes(&path, content.as_bytes()) {
-            Ok(()) => written.push(path),
-            Err(e) => errors.push(e),
-        }
-    }
-    (written, errors)
+/// Removes temporary files that dead processes left in a directory; their number. A living one has its file locked.
+pub fn clear_temporaries(directory: &Path) -> usize {
+    let entries = fs::read_dir(directory).into_iter().flatten().flatten();
+    let temporary = entries
+        .filter(|e| e.file_type().is_ok_and(|kind| kind.is_file()) && is_temporary(&e.file_name()))
+        .map(|entry| entry.path());
+    let is_left = |path: &PathBuf| File::open(path).is_ok_and(|file| file.try_lock().is_ok());
+    temporary.filter(is_left).filter(|path| fs::remove_file(path).is_ok()).count()
 }
 
 fn write_and_rename(
@@ -87,12 +83,24 @@ fn create_beside(path: &Path) -> io::Result<(Temporary, File)> {
         hidden.push(format!(".{}-{}.tmp", process::id(), NEXT.fetch_add(1, Ordering::Relaxed)));
         let candidate = path.with_file_name(hidden);
         match OpenOptions::new().write(true).create_new(true).open(&candidate) {
-            Ok(file) => return Ok((Temporary { path: candidate, armed: true }, file)),
+            Ok(file) => {
+                // For [`clear_temporaries`]; a file system without locks clears none.
+                file.try_lock().ok();
+                return Ok((Temporary { path: candidate, armed: true }, file));
+            }
             // Left behind by a killed process that had our id.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),
         }
     }
+}
+
+/// Whether [`create_beside`] gives such names: `.NAME.PROCESS-NUMBER.tmp`.
+fn is_temporary(name: &OsStr) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let stem = name.to_str().and_then(|name| name.strip_prefix('.')?.strip_suffix(".tmp"));
+    let numbers = stem.and_then(|stem| stem.rsplit_once('.')?.1.split_once('-'));
+    numbers.is_some_and(|(process, number)| is_number(process) && is_number(number))
 }
 
 /// Removes the file when dropped, unless it was renamed.

@@ -1,4 +1,4 @@
-//! Maps of numbers as OpenEXR files: f32 and u32 channels, lossless, in scan lines, with the run's description in
+//! Maps of numbers as OpenEXR files: f32 channels, lossless, in scan lines, with the run's description in
 //! attributes. The same contents give the same bytes.
 //!
 //! Text attributes are UTF-8. The format has no 64-bit integer: one that does not fit 32 bits is written as decimal text.
@@ -18,17 +18,8 @@ use crate::files::atomic::write_atomically;
 pub struct Channel<'a> {
     /// Its name, unique in the file.
     pub name: &'a str,
-    /// Its values, rows from the top.
-    pub data: Data<'a>,
-}
-
-/// Values of a channel.
-#[derive(Debug, Clone, Copy)]
-pub enum Data<'a> {
-    /// 32-bit floats; NaN and infinities are kept.
-    F32(&'a [f32]),
-    /// 32-bit unsigned integers.
-    U32(&'a [u32]),
+    /// Its values, rows from the top; NaN and infinities are kept.
+    pub data: &'a [f32],
 }
 
 /// Numbers as 32-bit floats, which a file holds.
@@ -147,18 +138,15 @@ fn checked(channels: &[Channel<'_>], cells: usize) -> Result<Vec<exr::AnyChannel
     }
     let mut list = Vec::new();
     for (i, channel) in channels.iter().enumerate() {
-        let samples = match channel.data {
-            Data::F32(values) => exr::FlatSamples::F32(values.to_vec()),
-            Data::U32(values) => exr::FlatSamples::U32(values.to_vec()),
-        };
-        if samples.len() != cells {
-            let found = format!("{} values in channel \"{}\"", samples.len(), channel.name);
+        if channel.data.len() != cells {
+            let found = format!("{} values in channel \"{}\"", channel.data.len(), channel.name);
             return Err(Diagnostic::new(Kind::Range, found, format!("{cells} values")));
         }
         check_name("channel", channel.name)?;
         if channels[..i].iter().any(|other| other.name == channel.name) {
             return Err(bad_name("channel", channel.name, "a name used once"));
         }
+        let samples = exr::FlatSamples::F32(channel.data.to_vec());
         list.push(exr::AnyChannel::new(text(channel.name), samples));
     }
     Ok(list)
@@ -255,21 +243,20 @@ mod tests {
         let mut lux: Vec<f32> = (0..width * height).map(|i| (i as f32 * 0.37).exp2()).collect();
         (lux[3], lux[4], lux[5]) = (f32::NAN, f32::NEG_INFINITY, -0.0);
         lux[6] = f32::from_bits(1);
-        let hits: Vec<u32> = (0..(width * height) as u32).map(|i| u32::MAX - i * 1000).collect();
+        let hits: Vec<f32> = (0..width * height).map(|i| ((1 << 24) - i) as f32).collect();
         let channels = [
-            Channel { name: "standard_error", data: Data::F32(&lux) },
-            Channel { name: "hits", data: Data::U32(&hits) },
-            Channel { name: "illuminance", data: Data::F32(&lux) },
+            Channel { name: "standard_error", data: &lux },
+            Channel { name: "hits", data: &hits },
+            Channel { name: "Y", data: &lux },
         ];
         write_maps(&path, [width, height], &channels, &attributes(), Light::Other).unwrap();
         let maps = read_maps(&path).unwrap();
         assert_eq!((maps.width, maps.height), (width, height));
         let names: Vec<&str> = maps.channels.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!(names, ["hits", "illuminance", "standard_error"]);
-        assert_eq!(maps.channels[0].1, Samples::U32(hits));
-        for (_, data) in &maps.channels[1..] {
+        assert_eq!(names, ["Y", "hits", "standard_error"]);
+        for ((_, data), written) in maps.channels.iter().zip([&lux, &hits, &lux]) {
             let Samples::F32(read) = data else { unreachable!() };
-            assert!(read.iter().zip(&lux).all(|(a, b)| a.to_bits() == b.to_bits()));
+            assert!(read.iter().zip(written).all(|(a, b)| a.to_bits() == b.to_bits()));
         }
         for (name, value) in attributes() {
             let expected = match value {
@@ -286,7 +273,7 @@ mod tests {
     #[test]
     fn the_same_contents_give_the_same_bytes() {
         let lux: Vec<f32> = (0..64 * 64).map(|i| (i as f32).sin()).collect();
-        let channels = [Channel { name: "illuminance", data: Data::F32(&lux) }];
+        let channels = [Channel { name: "Y", data: &lux }];
         let first = encode(64, 64, &channels, &attributes(), Light::Other).unwrap();
         for _ in 0..8 {
             let mut shuffled = attributes();
@@ -298,7 +285,7 @@ mod tests {
     #[test]
     fn what_cannot_be_written_is_refused() {
         let values = [1.0_f32; 4];
-        let good = Channel { name: "a", data: Data::F32(&values) };
+        let good = Channel { name: "a", data: &values };
         let kind = |w, h, c: &[Channel<'_>], a: &[(String, Value)]| {
             encode(w, h, c, a, Light::Other).unwrap_err().kind()
         };

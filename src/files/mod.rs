@@ -3,17 +3,21 @@
 //! A reader gives the plain data of the room it serves; a writer takes it. Nothing else in the program opens a file.
 
 pub mod atomic;
+pub mod base64;
 pub mod bsdf;
 pub mod bytes;
 mod excerpt;
 pub mod exr;
+pub mod folder;
 pub mod height_image;
 pub mod lm63;
 mod mesh_formats;
 pub mod obj;
 mod obj_text;
+pub mod outputs;
 pub mod parts;
 pub mod photon_map;
 #[cfg(feature = "plots")]
 pub mod png;
 pub mod scene_toml;
+pub mod set;

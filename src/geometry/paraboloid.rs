@@ -1,5 +1,7 @@
 //! An exact paraboloid of revolution, clipped at its rim.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
 use super::exact::exact_difference;
@@ -8,6 +10,7 @@ use super::sphere::{GAMMA, Root};
 use super::{COORDINATE, LENGTH, Transform};
 use crate::error::Invalid;
 use crate::math::frame::unit;
+use crate::math::trig::sin_cos;
 
 /// A bowl: points at height `r^2 / (4 f)` over the vertex along the axis, out to the rim radius. The outward normal
 /// points to the side of the focus. Open.
@@ -78,9 +81,18 @@ impl Paraboloid {
     pub fn uv(&self, position: DVec3) -> (f64, f64) {
         let d = position - self.vertex;
         let (x, y) = (d.dot(self.x), d.dot(self.y));
-        let u = libm::atan2(y, x) / std::f64::consts::TAU;
+        let u = libm::atan2(y, x) / TAU;
         let v = self.area_fraction((x * x + y * y).sqrt()) / self.area_fraction(self.radius);
         (if u < 0.0 { (u + 1.0).min(1.0) } else { u }, v.clamp(0.0, 1.0))
+    }
+
+    /// The point of these coordinates: the inverse of [`Paraboloid::uv`].
+    pub fn at(&self, u: f64, v: f64) -> DVec3 {
+        let within = v * self.area_fraction(self.radius);
+        let r = 2.0 * self.focal_length * libm::expm1(libm::log1p(within) / 1.5).sqrt();
+        let (sin, cos) = sin_cos(TAU * u);
+        let along = 0.25 * r * r / self.focal_length;
+        self.vertex + self.x * (r * cos) + self.y * (r * sin) + self.axis * along
     }
 
     /// The paraboloid, moved.
@@ -121,7 +133,7 @@ impl Paraboloid {
         let sectors = 3 * rings.max(1);
         let point = |i: u32, j: u32| {
             let radius = self.radius * f64::from(i) / f64::from(rings);
-            let phi = std::f64::consts::TAU * f64::from(j % sectors) / f64::from(sectors);
+            let phi = TAU * f64::from(j % sectors) / f64::from(sectors);
             let across = self.x * libm::cos(phi) + self.y * libm::sin(phi);
             self.project(self.vertex + across * radius)
         };
@@ -264,8 +276,7 @@ mod tests {
         let p = dish();
         let integral = |r: f64| {
             let n = 2000;
-            let g =
-                |x: f64| std::f64::consts::TAU * x * (1.0 + x * x / (4.0 * p.focal_length.powi(2))).sqrt();
+            let g = |x: f64| TAU * x * (1.0 + x * x / (4.0 * p.focal_length.powi(2))).sqrt();
             let h = r / f64::from(n);
             (0..=n)
                 .map(|i| {
@@ -278,7 +289,8 @@ mod tests {
         let at = p.project(p.vertex + p.x * 0.3 + p.y * 0.4);
         let (u, v) = p.uv(at);
         assert!((v - integral(0.5) / integral(0.8)).abs() < 1e-12);
-        assert!((u - 4f64.atan2(3.0) / std::f64::consts::TAU).abs() < 1e-12);
+        assert!((u - 4f64.atan2(3.0) / TAU).abs() < 1e-12);
+        assert!((p.at(u, v) - at).length() < 1e-12);
         // A mirror as flat as a plate: area pi R^2 (1 + R^2 / 16 f^2 ...).
         let flat = Paraboloid::new(DVec3::ZERO, DVec3::Z, 1e6, 1.0).unwrap();
         assert!((flat.area() / (std::f64::consts::PI * (1.0 + 1.0 / 16e12)) - 1.0).abs() < 1e-14);
@@ -295,8 +307,7 @@ mod tests {
                 let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
                 for i in 0..=200 {
                     for j in 0..200 {
-                        let (r, a) =
-                            (0.8 * f64::from(i) / 200.0, f64::from(j) * std::f64::consts::TAU / 200.0);
+                        let (r, a) = (0.8 * f64::from(i) / 200.0, f64::from(j) * TAU / 200.0);
                         let q = p.project(p.vertex + p.x * (r * a.cos()) + p.y * (r * a.sin()));
                         least = least.min(q);
                         most = most.max(q);

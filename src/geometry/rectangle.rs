@@ -71,6 +71,11 @@ impl Rectangle {
         (along(self.edge_u), along(self.edge_v))
     }
 
+    /// The point of these fractions of the edges.
+    pub fn at(&self, u: f64, v: f64) -> DVec3 {
+        self.corners[0] + self.edge_u * u + self.edge_v * v
+    }
+
     /// The rectangle, moved.
     ///
     /// # Errors

@@ -85,6 +85,16 @@ impl Shape {
         }
     }
 
+    /// The point of these surface coordinates; `None` for a mesh.
+    pub fn at(&self, u: f64, v: f64) -> Option<DVec3> {
+        match self {
+            Self::Mesh(_) => None,
+            Self::Rectangle(r) => Some(r.at(u, v)),
+            Self::Sphere(s) => Some(s.at(u, v)),
+            Self::Paraboloid(p) => Some(p.at(u, v)),
+        }
+    }
+
     /// The shape, moved.
     ///
     /// # Errors

@@ -1,10 +1,13 @@
 //! An exact sphere.
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 
 use super::ray::Ray;
 use super::{COORDINATE, LENGTH, Transform};
 use crate::error::Invalid;
+use crate::math::trig::sin_cos;
 
 /// A sphere; the outward normal points away from the centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,9 +56,17 @@ impl Sphere {
     /// Lambert's equal-area cylindrical map: u = azimuth about z from x, over 2 pi; v = (1 + z / radius) / 2.
     pub fn uv(&self, position: DVec3) -> (f64, f64) {
         let d = position - self.centre;
-        let u = libm::atan2(d.y, d.x) / std::f64::consts::TAU;
+        let u = libm::atan2(d.y, d.x) / TAU;
         let v = 0.5 + 0.5 * d.z / d.length();
         (if u < 0.0 { (u + 1.0).min(1.0) } else { u }, v.clamp(0.0, 1.0))
+    }
+
+    /// The point of these coordinates: the inverse of [`Sphere::uv`].
+    pub fn at(&self, u: f64, v: f64) -> DVec3 {
+        let z = 2.0 * v - 1.0;
+        let across = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
+        let (sin, cos) = sin_cos(TAU * u);
+        self.centre + DVec3::new(across * cos, across * sin, z) * self.radius
     }
 
     /// The sphere, moved.
@@ -136,6 +147,11 @@ mod tests {
         assert!((v - 0.75).abs() < 1e-15);
         let (u, _) = s.uv(s.centre + DVec3::new(0.0, -2.0, 0.0));
         assert!((u - 0.75).abs() < 1e-15);
+        // Half-way up to the pole in area, at azimuth 60 degrees: z = R / 2 and x = R cos(60) sqrt(3) / 2.
+        let at = s.at(1.0 / 6.0, 0.75) - s.centre;
+        assert!((at - 2.0 * DVec3::new(3f64.sqrt() / 4.0, 0.75, 0.5)).length() < 1e-15);
+        let (u, v) = s.uv(s.at(0.9, 0.03));
+        assert!((u - 0.9).abs() < 1e-15 && (v - 0.03).abs() < 1e-15);
     }
 
     #[test]

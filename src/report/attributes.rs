@@ -19,7 +19,7 @@ pub fn attributes(
     let mut all = run_attributes(scene, &outcome.plan, outcome.photons, outcome.replicates);
     let mut text = |name: &str, value: &str| all.push((name.to_string(), Value::Text(value.to_string())));
     text("caustix.quantity", "illuminance: flux arriving before the event, per cell area");
-    text("caustix.unit.illuminance", "lx");
+    text("caustix.unit.Y", "lx");
     text("caustix.unit.standard_error", "lx");
     text("caustix.unit.hits", "photons");
     text("caustix.receiver", &receiver.name);
@@ -41,6 +41,10 @@ pub fn attributes(
     text("caustix.side", side);
     text("caustix.events", events);
     text("caustix.layout", layout);
+    if let Some(most) = statistics.rounded_hits() {
+        let why = format!("up to {most} photons in a cell: a float holds 24 binary digits of it");
+        text("caustix.hits_rounded", &why);
+    }
     if let Some(why) = why_no_error(outcome) {
         text("caustix.standard_error_absent", why);
     }

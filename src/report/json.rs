@@ -15,6 +15,7 @@ use crate::scene::receiver::Receiver;
 use crate::transport::census::Exceptions;
 
 use super::camera::CameraReport;
+use super::numbers::grouped;
 use super::statistics::{ReceiverStatistics, why_no_error};
 
 /// Everything report.json says. Names are a contract: they are only added to.
@@ -80,11 +81,7 @@ impl RunReport {
         let rejects = algorithm.variant.rejects();
         Self {
             caustix: env!("CARGO_PKG_VERSION"),
-            scene: SceneReport {
-                path: scene.identity.name.clone(),
-                sha256: scene.identity.sha256.clone(),
-                files: scene.identity.files.iter().cloned().collect(),
-            },
+            scene: SceneReport::new(scene),
             variant: algorithm.variant.name(),
             sequence: algorithm.sequence.name(),
             solver: (!rejects).then(|| algorithm.solver.name()),
@@ -104,6 +101,17 @@ pub struct SceneReport {
     pub sha256: String,
     /// SHA-256 of the files it names, by the path written there.
     pub files: BTreeMap<String, String>,
+}
+
+impl SceneReport {
+    /// Of this scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            path: scene.identity.name.clone(),
+            sha256: scene.identity.sha256.clone(),
+            files: scene.identity.files.iter().cloned().collect(),
+        }
+    }
 }
 
 /// Times of a report.
@@ -196,6 +204,21 @@ pub struct ReceiverReport<'a> {
 /// The code of what was found before the run.
 const SCENE: &str = "scene";
 
+/// The code of numbers of photons that an EXR does not hold to the last digit.
+const HITS_ROUNDED: &str = "hits-rounded";
+
+fn rounded_hits((receiver, numbers): (&Receiver, &ReceiverStatistics)) -> Option<Warning> {
+    let (name, most) = (&receiver.name, grouped(numbers.rounded_hits()?));
+    Some(Warning {
+        severity: Severity::Note,
+        code: HITS_ROUNDED,
+        message: format!("{name}.exr: {most} photons in a cell, of which a float holds 24 binary digits"),
+        surfaces: Vec::new(),
+        share: None,
+        remedy: format!("{name}.csv has the whole numbers; illuminance and its error are not concerned"),
+    })
+}
+
 /// What was found before the run, as notes.
 fn of_scene(found: &[Diagnostic]) -> impl Iterator<Item = Warning> {
     found.iter().map(|found| Warning {
@@ -228,8 +251,9 @@ impl<'a> Report<'a> {
             trapped.iter().map(|(n, count)| (n.clone(), *count as f64 * outcome.photon_lm)).collect();
         let photons = outcome.photons as f64;
         let receivers = scene.receivers.iter().zip(statistics).zip(files);
+        let rounded = scene.receivers.iter().zip(statistics).filter_map(rounded_hits);
         let warnings: Vec<Warning> =
-            warnings(scene, outcome).into_iter().chain(of_scene(&scene.warnings)).collect();
+            warnings(scene, outcome).into_iter().chain(rounded).chain(of_scene(&scene.warnings)).collect();
         let untrusted = |receiver: &Receiver| {
             let surface = scene.geometry.name(receiver.surface);
             let spoils = |w: &&Warning| {

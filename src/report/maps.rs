@@ -1,11 +1,12 @@
-//! The files of a receiver: EXR for every one, CSV (and PLY, [`super::ply`]) where the cells are faces of a mesh.
+//! The files of a receiver: EXR and CSV for every one; PLY and VTP ([`super::ply`], [`super::vtp`]) where the cells are faces
+//! of a mesh.
 
 use std::io::Write;
 use std::path::Path;
 
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
-use crate::files::exr::{Channel, Data, Light, floats, write_maps};
+use crate::files::exr::{Channel, Light, floats, write_maps};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
@@ -25,7 +26,16 @@ fn exr_size(cells: Cells) -> (usize, usize) {
     }
 }
 
-/// Writes a receiver's map as EXR: `illuminance` and `standard_error` in lx, `hits`; everything needed to repeat the run as
+/// Most rows of a table of cells: what a spreadsheet takes. Larger maps have their EXR.
+const MOST_ROWS: usize = 1 << 20;
+
+/// Whether a receiver's cells are written as CSV: faces always, a grid up to 2^20 cells.
+pub fn has_csv(receiver: &Receiver) -> bool {
+    matches!(receiver.cells, Cells::Faces { .. }) || receiver.cells.len() <= MOST_ROWS
+}
+
+/// Writes a receiver's map as EXR: `Y` (illuminance) and `standard_error` in lx, `hits`, all as floats, since common readers take
+/// no other channels beside them; everything needed to repeat the run as
 /// attributes. The faces of a mesh fill rows of equal length, NaN beyond the last.
 ///
 /// # Errors
@@ -45,19 +55,22 @@ pub fn write_exr(
     };
     let illuminance = padded(&statistics.illuminance_lx)?;
     let error = padded(&statistics.standard_error_lx)?;
-    let mut hits: Vec<u32> = statistics.hits.iter().map(|h| u32::try_from(*h).unwrap_or(u32::MAX)).collect();
-    hits.resize(width * height, 0);
+    // Where one is rounded, an attribute says so.
+    let mut hits: Vec<f32> = statistics.hits.iter().map(|hits| *hits as f32).collect();
+    hits.resize(width * height, 0.0);
     let channels = [
-        Channel { name: "illuminance", data: Data::F32(&illuminance) },
-        Channel { name: "standard_error", data: Data::F32(&error) },
-        Channel { name: "hits", data: Data::U32(&hits) },
+        Channel { name: "Y", data: &illuminance },
+        Channel { name: "standard_error", data: &error },
+        Channel { name: "hits", data: &hits },
     ];
     let attributes = attributes(scene, outcome, receiver, statistics);
     write_maps(path, [width, height], &channels, &attributes, Light::Other)
 }
 
-/// Writes a receiver's faces as CSV, one row a face: number, centroid (m), area (m2), illuminance and standard error (lx,
-/// empty where unknown), hits; false, and no file, where its cells are no faces.
+/// Writes a receiver's cells as CSV; false, and no file, where a grid has more than 2^20 of them.
+///
+/// A grid has one row a cell, in the order of the EXR's pixels: the cell's middle (m), its (u, v), illuminance and standard error
+/// (lx, empty where unknown), hits. A mesh has one row a face: number, centroid (m), area (m2), and the same numbers.
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -67,18 +80,36 @@ pub fn write_csv(
     receiver: &Receiver,
     statistics: &ReceiverStatistics,
 ) -> Result<bool> {
-    let Cells::Faces { count } = receiver.cells else { return Ok(false) };
+    if !has_csv(receiver) {
+        return Ok(false);
+    }
     let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
-    write_atomically(path, |out| {
-        writeln!(out, "face,x_m,y_m,z_m,area_m2,illuminance_lx,standard_error_lx,hits")?;
-        for face in 0..count {
-            let Some([a, b, c]) = shape.triangle(face) else { continue };
-            let m = (a + b + c) / 3.0;
-            let (area, lux) = (receiver.area_m2(face), statistics.illuminance_lx[face]);
-            let (error, hits) = (bare(Some(statistics.standard_error_lx[face])), statistics.hits[face]);
-            writeln!(out, "{face},{},{},{},{area},{lux},{error},{hits}", m.x, m.y, m.z)?;
+    let numbers = |cell: usize| {
+        let error = bare(Some(statistics.standard_error_lx[cell]));
+        format!("{},{error},{}", statistics.illuminance_lx[cell], statistics.hits[cell])
+    };
+    const NUMBERS: &str = "illuminance_lx,standard_error_lx,hits";
+    write_atomically(path, |out| match receiver.cells {
+        Cells::Faces { count } => {
+            writeln!(out, "face,x_m,y_m,z_m,area_m2,{NUMBERS}")?;
+            for face in 0..count {
+                let Some([a, b, c]) = shape.triangle(face) else { continue };
+                let m = (a + b + c) / 3.0;
+                writeln!(out, "{face},{},{},{},{},{}", m.x, m.y, m.z, receiver.area_m2(face), numbers(face))?;
+            }
+            Ok(())
         }
-        Ok(())
+        Cells::Grid { nu, nv } => {
+            writeln!(out, "x_m,y_m,z_m,u,v,{NUMBERS}")?;
+            for (row, column) in (0..nv).flat_map(|row| (0..nu).map(move |column| (row, column))) {
+                let u = (f64::from(column) + 0.5) / f64::from(nu);
+                let v = (f64::from(nv - 1 - row) + 0.5) / f64::from(nv);
+                let Some(m) = shape.at(u, v) else { continue };
+                let cell = row as usize * nu as usize + column as usize;
+                writeln!(out, "{},{},{},{u},{v},{}", m.x, m.y, m.z, numbers(cell))?;
+            }
+            Ok(())
+        }
     })?;
     Ok(true)
 }

@@ -1,4 +1,4 @@
-//! What a run says: report.json, the printed summary, maps as EXR, CSV and PLY; what a study says: [`compare`], [`room`].
+//! What a run says: report.json, the printed summary, maps as EXR, CSV, PLY and VTP; what a study says: [`compare`], [`room`].
 //!
 //! Numbers, text and plain files only: what is drawn is in `plot`, which comes after this room.
 
@@ -8,9 +8,11 @@ pub mod statistics;
 pub mod attributes;
 pub mod maps;
 pub mod ply;
+pub mod vtp;
 pub mod picture;
 pub mod camera;
 pub mod json;
+pub mod vouched;
 pub mod saved;
 pub mod text;
 pub mod photometry;

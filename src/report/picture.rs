@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::exr::{Channel, Data, Light, Value, floats, write_maps};
+use crate::files::exr::{Channel, Light, Value, floats, write_maps};
 use crate::picture::camera::Film;
 use crate::run::Plan;
 use crate::scene::Scene;
@@ -47,8 +47,7 @@ pub fn write_exr<const C: usize>(
     }
     plane("standard_error", &mut film.standard_error.iter().copied())?;
     plane("bias", &mut film.bias.iter().copied())?;
-    let channels: Vec<Channel<'_>> =
-        planes.iter().map(|(name, data)| Channel { name, data: Data::F32(data) }).collect();
+    let channels: Vec<Channel<'_>> = planes.iter().map(|(name, data)| Channel { name, data }).collect();
     let attributes = [attributes, &picture_attributes(&tone(spec, film))].concat();
     write_maps(path, [width, height], &channels, &attributes, Light::Luminance)
 }

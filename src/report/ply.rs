@@ -8,7 +8,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::error::Result;
+use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
 use crate::geometry::{Mesh, Shape};
 use crate::run::Outcome;
@@ -22,7 +22,7 @@ use super::statistics::ReceiverStatistics;
 /// Writes the faces of one receiver; false, and no file, where its surface is no mesh.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// More hits of a face than the format holds; a file that cannot be written.
 pub fn write_ply(
     path: &Path,
     scene: &Scene,
@@ -32,13 +32,14 @@ pub fn write_ply(
 ) -> Result<bool> {
     let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize];
     let Shape::Mesh(mesh) = &surface.shape else { return Ok(false) };
-    let comments = [
-        format!("caustix {}", env!("CARGO_PKG_VERSION")),
-        format!("receiver {} on surface {}", receiver.name, surface.name),
-        format!("{} photons, seed {}", outcome.photons, outcome.plan.seed()),
-        format!("scene sha256 {}", scene.identity.sha256),
-        "quality = illuminance_lx; lengths in metres".to_string(),
-    ];
+    let mut comments = comments(scene, outcome, receiver).to_vec();
+    comments.push("quality = illuminance_lx; lengths in metres".to_string());
+    if let Some(most) = statistics.hits.iter().find(|hits| u32::try_from(**hits).is_err()) {
+        let (found, required) = (format!("{most} hits of a face"), "at most 4294967295, which PLY holds");
+        return Err(Diagnostic::new(Kind::Limit, found, required)
+            .hint("the .csv and the .vtp of the same receiver have them")
+            .in_file(path));
+    }
     write_atomically(path, |out| {
         out.write_all(header(mesh, &comments).as_bytes())?;
         for vertex in mesh.vertices() {
@@ -53,6 +54,16 @@ pub fn write_ply(
         Ok(())
     })?;
     Ok(true)
+}
+
+/// Where the numbers of a mesh's file come from, a line each.
+pub(super) fn comments(scene: &Scene, outcome: &Outcome, receiver: &Receiver) -> [String; 4] {
+    [
+        format!("caustix {}", env!("CARGO_PKG_VERSION")),
+        format!("receiver {} on surface {}", receiver.name, scene.geometry.name(receiver.surface)),
+        format!("{} photons, seed {}", outcome.photons, outcome.plan.seed()),
+        format!("scene sha256 {}", scene.identity.sha256),
+    ]
 }
 
 fn header(mesh: &Mesh, comments: &[String]) -> String {

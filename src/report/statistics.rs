@@ -38,6 +38,12 @@ pub struct ReceiverStatistics {
 }
 
 impl ReceiverStatistics {
+    /// The most photons in a cell whose number a 32-bit float (an EXR's) rounds: all up to 2^24 are exact, and some beyond.
+    pub fn rounded_hits(&self) -> Option<u64> {
+        let is_rounded = |hits: &u64| *hits as f32 as u64 != *hits;
+        self.hits.iter().copied().filter(is_rounded).max()
+    }
+
     /// The numbers of receiver number `index`.
     pub fn new(outcome: &Outcome, receiver: &Receiver, index: usize) -> Self {
         let cells = receiver.cells.len();
@@ -83,5 +89,33 @@ pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
             Some("this sequence has no seed: there is one replicate, and one set of points has no spread")
         }
         (_, true) => Some("one replicate: the points of one set are not independent of each other"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_photons_that_a_float_rounds_are_found() {
+        let most = |hits: Vec<u64>| {
+            let numbers = ReceiverStatistics {
+                illuminance_lx: Vec::new(),
+                standard_error_lx: Vec::new(),
+                hits,
+                flux_lm: 0.0,
+                flux_standard_error_lm: None,
+                min_lx: 0.0,
+                mean_lx: 0.0,
+                max_lx: 0.0,
+                uniformity_u0: None,
+                area_m2: 1.0,
+                cells: 1,
+                expected_nrms: None,
+            };
+            numbers.rounded_hits()
+        };
+        assert_eq!(most((0..=1 << 24).step_by(4095).chain([1 << 24, 1 << 45]).collect()), None);
+        assert_eq!(most(vec![7, (1 << 24) + 1, (1 << 24) + 2]), Some(16_777_217));
     }
 }

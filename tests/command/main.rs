@@ -10,7 +10,11 @@ mod check;
 mod contract;
 #[cfg(unix)]
 mod interrupts;
+mod maps_open;
 mod outputs;
 mod picture;
+mod result_set;
+#[cfg(unix)]
+mod result_set_cut;
 mod results_kept;
 mod sample;

@@ -11,8 +11,9 @@ use crate::book::Parts;
 use crate::openexr;
 
 /// Keys of JSON that another run, machine or version may fill otherwise.
-const KEYS_LEFT_OUT: [&str; 10] = [
+const KEYS_LEFT_OUT: [&str; 11] = [
     "caustix",
+    "files_bytes",
     "map",
     "memory_mb",
     "ns_per_sample",
@@ -50,6 +51,8 @@ pub fn parts(path: &Path) -> Option<Parts> {
         "csv" => Some(csv(&text())),
         "json" => Some(json(&serde_json::from_str(&text()).unwrap())),
         "ply" => Some(ply(&read())),
+        // After the comment, which names the version and the scene's hash.
+        "vtp" => Some(vec![("body".into(), hash(text().split_once("-->").unwrap().1.as_bytes()))]),
         "png" => Some(png(path)),
         "svg" => Some(vec![("text".into(), hash(&read()))]),
         // compare.md: its tables are those of compare.csv, with times between them; photons as saved: a
@@ -110,15 +113,19 @@ fn canonical(value: &Value) -> String {
         Value::Object(_) => {
             let mut all = entries(value);
             all.sort_by(|a, b| a.0.cmp(&b.0));
-            let is_hash = |v: &Value| v.as_str().is_some_and(|s| s.len() == 64 && is_hexadecimal(s));
-            let text = |v: &Value| if is_hash(v) { "a hash".to_string() } else { canonical(v) };
-            let all: Vec<String> = all.iter().map(|(key, v)| format!("{key:?}:{}", text(v))).collect();
+            let all: Vec<String> = all.iter().map(|(key, v)| format!("{key:?}:{}", canonical(v))).collect();
             format!("{{{}}}", all.join(","))
         }
         Value::Array(list) => format!("[{}]", list.iter().map(canonical).collect::<Vec<_>>().join(",")),
+        hash if is_hash(hash) => "a hash".to_string(),
         // The shortest digits that read back as the same bits.
         other => other.to_string(),
     }
+}
+
+/// Hashes are of files that tell times and versions: that there is one is all that counts.
+fn is_hash(value: &Value) -> bool {
+    value.as_str().is_some_and(|s| s.len() == 64 && is_hexadecimal(s))
 }
 
 fn is_hexadecimal(text: &str) -> bool {

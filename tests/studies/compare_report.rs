@@ -1,6 +1,5 @@
 //! How a study is shown and kept, from made-up studies whose laws, ratios and limits are known.
 
-use caustix::files::atomic::write_each;
 use caustix::lab::study::fit::Uncertainty;
 use caustix::lab::study::norms::Errors;
 use caustix::lab::study::results::Study;
@@ -275,23 +274,6 @@ fn a_study_survives_being_written_and_read() {
     let study = study(&ladder(), 2, 0.02);
     let json = serde_json::to_string(&study).unwrap();
     assert_eq!(serde_json::from_str::<Study>(&json).unwrap(), study);
-}
-
-#[test]
-fn files_are_written_and_one_that_cannot_be_keeps_no_other() {
-    let study = study(&ladder(), 2, 0.02);
-    let table = Table::new(&study);
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::create_dir_all(directory.path().join("compare.md/occupied")).unwrap();
-    let files = [
-        ("compare.csv", csv(&study, &table)),
-        ("compare.md", markdown(&study, &table)),
-        ("compare.svg", drawing(&study, &table).to_svg()),
-    ];
-    let (written, errors) = write_each(directory.path(), &files);
-    let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!((names, errors.len()), (vec!["compare.csv", "compare.svg"], 1));
-    assert_eq!(std::fs::read_to_string(&written[0]).unwrap(), csv(&study, &table));
 }
 
 /// Tags nest, attributes are quoted, and no bare `<` or `&` stands in text.

@@ -24,3 +24,4 @@ pub mod sphere_table;
 pub mod statistics;
 pub mod stranger;
 pub mod tables;
+pub mod vouched;

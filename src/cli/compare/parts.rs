@@ -1,17 +1,23 @@
 //! Parts that a study has finished, and what names them.
 
+use std::path::PathBuf;
+
 use indicatif::ProgressBar;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::CompareArgs;
 use crate::cli::progress::{catch_interrupts, progress_bar};
-use crate::cli::render::FOR_RESULTS;
-use crate::cli::{exit, print, say};
+use crate::cli::{exit, print, results, say};
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::atomic::{make_directory, write_each};
+use crate::files::atomic::clear_temporaries;
+use crate::files::folder::Folder;
+use crate::files::outputs::check_outputs;
 use crate::files::parts::{Found, Parts};
+use crate::files::set::Set;
 use crate::lab::study::REVISION;
+use crate::report::json::SceneReport;
+use crate::report::vouched::vouching;
 use crate::scene::Scene;
 
 /// All that a scene's photons depend on.
@@ -27,20 +33,23 @@ pub fn scene_key(scene: &Scene) -> String {
 
 /// The parts that a study keeps, and the bar over its photons.
 pub struct Kept {
+    folder: Folder,
     pub parts: Parts,
     pub progress: ProgressBar,
 }
 
 impl Kept {
-    /// Makes the folder of a study of so many photons, and catches Ctrl-C.
+    /// Takes the folder of a study of so many photons, whose files have these names, and catches Ctrl-C.
     ///
     /// # Errors
-    /// A folder that cannot be made.
-    pub fn start(args: &CompareArgs, photons: u64) -> Result<Self> {
-        make_directory(&args.output, FOR_RESULTS)?;
+    /// A folder that cannot be made or that another run has; files that would replace those of the scene.
+    pub fn start(args: &CompareArgs, scene: &Scene, photons: u64, names: &[&str]) -> Result<Self> {
+        let folder = results::take(&args.output)?;
+        check_outputs(&outputs(args, names), &results::inputs(args.scene.as_deref(), scene))?;
         catch_interrupts();
         let parts = Parts::new(args.output.join("parts"));
-        Ok(Self { parts, progress: progress_bar(args.quiet, photons) })
+        clear_temporaries(parts.directory());
+        Ok(Self { folder, parts, progress: progress_bar(args.quiet, photons) })
     }
 
     /// A part that is there and whole; one that is damaged is told, and made again.
@@ -89,17 +98,46 @@ impl Kept {
     }
 }
 
-/// Writes the files of a study, and prints what it found.
+/// The list of a study's files.
+const LIST: &str = "compare.json";
+
+/// What the list says besides.
+#[derive(Serialize)]
+struct StudyReport {
+    /// Version of the program.
+    caustix: &'static str,
+    /// The scene.
+    scene: SceneReport,
+}
+
+/// Writes the files of a study, and prints what it found; whether all could be written.
 ///
 /// # Errors
-/// Files that cannot be written; they keep no other from being.
-pub fn write_study(args: &CompareArgs, files: &[(&str, String)], text: &str) -> Result<(), Vec<Diagnostic>> {
-    let (_, errors) = write_each(&args.output, files);
+/// A folder that cannot be written to.
+pub fn write_study(
+    args: &CompareArgs,
+    scene: &Scene,
+    kept: &Kept,
+    files: &[(&str, String)],
+    text: &str,
+) -> Result<bool> {
+    let mut set = Set::new(&kept.folder, LIST)?;
+    for (name, content) in files {
+        set.add_bytes(name, content.as_bytes());
+    }
+    let report = StudyReport { caustix: env!("CARGO_PKG_VERSION"), scene: SceneReport::new(scene) };
+    let written = set.finish(|files| vouching(&report, files));
+    results::tell(&kept.folder, &written, &results::inputs(args.scene.as_deref(), scene));
     if !args.quiet {
         print(text);
-        print(&format!("written to {}\n", args.output.display()));
+        print(&results::written_to(&kept.folder, &written));
     }
-    if errors.is_empty() { Ok(()) } else { Err(errors) }
+    Ok(written.errors.is_empty())
+}
+
+/// Every file of a study.
+fn outputs(args: &CompareArgs, names: &[&str]) -> Vec<PathBuf> {
+    names.iter().chain(&[LIST]).map(|name| args.output.join(name)).collect()
 }
 
 /// The command as it was typed, without the folder that the program lies in.

@@ -14,11 +14,14 @@ use crate::scene::Scene;
 use super::parts::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
+/// What a study writes.
+const FILES: [&str; 3] = ["compare.csv", "compare.md", "deviations.csv"];
+
 /// Runs the study; the exit code.
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     refuse_what_has_no_meaning(args)?;
     let options = Options::new(Options::paper_ladder(args.full), seeds(args)?)?;
-    let kept = Kept::start(args, options.photons())?;
+    let kept = Kept::start(args, scene, options.photons(), &FILES)?;
     let pool = thread_pool(args.threads)?;
     let mut measurements = Vec::new();
     for task in options.tasks() {
@@ -35,13 +38,14 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
         return Ok(kept.interrupted(&format!("{done} of {all} measurements are done")));
     }
     let study = RoomStudy::new(scene, &options, &measurements)?;
+    let [table, told, deviations] = FILES;
     let files = [
-        ("compare.csv", csv(&study)),
-        ("compare.md", markdown(&study, &command_line())),
-        ("deviations.csv", deviations_csv(&study)),
+        (table, csv(&study)),
+        (told, markdown(&study, &command_line())),
+        (deviations, deviations_csv(&study)),
     ];
-    write_study(args, &files, &text(&study))?;
-    Ok(exit::DONE)
+    let is_whole = write_study(args, scene, &kept, &files, &text(&study))?;
+    Ok(if is_whole { exit::DONE } else { exit::WRONG })
 }
 
 /// The numbers of photons and the sequences of this study are the paper's.

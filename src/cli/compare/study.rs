@@ -43,24 +43,30 @@ const FULL: [&str; 7] = [
     "qmc-inverse-reuse:independent",
 ];
 
+/// What a study writes.
+const FILES: [&str; 3] = ["compare.csv", "compare.md", "compare.svg"];
+
 /// Makes the study as far as it gets; the exit code.
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     let asked = Asked::new(args, scene)?;
-    let kept = Kept::start(args, asked.work())?;
+    let kept = Kept::start(args, scene, asked.work(), &FILES)?;
     let pool = thread_pool(args.threads)?;
     let job = Job { scene, asked, kept };
     let study = pool.install(|| job.study(args))?;
     job.kept.progress.finish_and_clear();
+    let mut is_whole = true;
     if let Some(study) = &study {
         let table = Table::new(study);
+        let [csv_file, told, plot] = FILES;
         let files = [
-            ("compare.csv", csv(study, &table)),
-            ("compare.md", markdown(study, &table)),
-            ("compare.svg", drawing(study, &table).to_svg()),
+            (csv_file, csv(study, &table)),
+            (told, markdown(study, &table)),
+            (plot, drawing(study, &table).to_svg()),
         ];
-        write_study(args, &files, &text(study, &table))?;
+        is_whole = write_study(args, scene, &job.kept, &files, &text(study, &table))?;
     }
     Ok(match study {
+        _ if !is_whole => exit::WRONG,
         _ if !INTERRUPTED.load(Ordering::Relaxed) => exit::DONE,
         Some(_) => job.kept.interrupted("the runs finished by then are in the table"),
         None => job.kept.interrupted("no run was finished"),
