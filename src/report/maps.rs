@@ -100,7 +100,7 @@ pub fn write_csv(
             Ok(())
         }
         Cells::Grid { nu, nv } => {
-            writeln!(out, "x_m,y_m,z_m,u,v,{NUMBERS}")?;
+            writeln!(out, "x,y,z,u,v,{NUMBERS}")?;
             for (row, column) in (0..nv).flat_map(|row| (0..nu).map(move |column| (row, column))) {
                 let u = (f64::from(column) + 0.5) / f64::from(nu);
                 let v = (f64::from(nv - 1 - row) + 0.5) / f64::from(nv);

@@ -95,16 +95,16 @@ fn rows_of_a_table_are_the_middles_of_cells_from_the_top_left() {
     assert_eq!(plate["u"].len(), 20);
     // The first pixel is at (u, v) = (0.1, 0.875): corner + 0.1 x 2 along x, 0.875 of (1.2, 1.6) along y and z.
     let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
-    let first = ["x_m", "y_m", "z_m", "u", "v"].map(|name| plate[name][0]);
+    let first = ["x", "y", "z", "u", "v"].map(|name| plate[name][0]);
     assert!(first.iter().zip([-0.8, 0.05, 1.4, 0.1, 0.875]).all(|(a, b)| close(*a, b)), "{first:?}");
-    let last = ["x_m", "y_m", "z_m", "u", "v"].map(|name| plate[name][19]);
+    let last = ["x", "y", "z", "u", "v"].map(|name| plate[name][19]);
     assert!(last.iter().zip([0.8, -0.85, 0.2, 0.9, 0.125]).all(|(a, b)| close(*a, b)), "{last:?}");
     assert!(close(plate["u"][1], 0.3) && close(plate["v"][5], 0.625));
     // Illuminance of a point lamp at each middle, Phi cos / (4 pi d^2), by the normal (0, -0.8, 0.6) of the plate. Cells of 0.4 m
     // by 0.5 m are not points: within a fifth where the plate is near, and of the sum within a few percent.
     let mut both = [0.0; 2];
     for (k, lux) in plate["illuminance_lx"].iter().enumerate() {
-        let d = [0.1 - plate["x_m"][k], -0.6 - plate["y_m"][k], 1.5 - plate["z_m"][k]];
+        let d = [0.1 - plate["x"][k], -0.6 - plate["y"][k], 1.5 - plate["z"][k]];
         let square: f64 = d.iter().map(|x| x * x).sum();
         let point =
             (100.0 / (4.0 * std::f64::consts::PI) * (-0.8 * d[1] + 0.6 * d[2]) / square.powf(1.5)).max(0.0);
@@ -119,9 +119,9 @@ fn rows_of_a_table_are_the_middles_of_cells_from_the_top_left() {
         let z = 0.5 * (2.0 * v - 1.0);
         let across = (0.25 - z * z).sqrt();
         let angle = std::f64::consts::TAU * u;
-        assert!(close(ball["z_m"][k], 3.5 + z));
-        assert!(close(ball["x_m"][k], 0.1 + across * angle.cos()));
-        assert!(close(ball["y_m"][k], -0.6 + across * angle.sin()));
+        assert!(close(ball["z"][k], 3.5 + z));
+        assert!(close(ball["x"][k], 0.1 + across * angle.cos()));
+        assert!(close(ball["y"][k], -0.6 + across * angle.sin()));
     }
     // The lamp is 2 m below the middle: it lights where z < -R^2 / 2 = -0.125 m, all of the lowest band and nothing of the highest.
     assert!(ball["hits"][..6].iter().all(|hits| *hits == 0.0));
