@@ -44,7 +44,7 @@ fn parts<'t>(scene: &'t mut Table, key: &str) -> impl Iterator<Item = &'t mut Ta
     list.unwrap_or_default().iter_mut().map(|part| part.as_table_mut().unwrap())
 }
 
-/// The scene with every length times `s`, its camera's included.
+/// The scene with every length times `s`, its camera's included, and luminances to match.
 pub fn scaled(mut scene: Table, s: f64) -> Table {
     parts(&mut scene, "emitter").for_each(|e| times(e, &["position", "radius", "size"], s));
     for surface in parts(&mut scene, "surface") {
@@ -74,6 +74,8 @@ pub fn scaled(mut scene: Table, s: f64) -> Table {
     }
     if let Some(camera) = scene.get_mut("camera").and_then(Value::as_table_mut) {
         times(camera, &["position", "look_at", "lens_radius", "focus", "radius", "progressive_radius"], s);
+        // The same flux gives luminances of the inverse square.
+        times(camera, &["background", "exposure"], 1.0 / (s * s));
     }
     scene
 }
