@@ -12,7 +12,7 @@ const SEEDS: u64 = 3;
 const LADDER: [u32; 3] = [14, 16, 18];
 
 fn reference(view: &View) -> Reference {
-    splatted(&view.scene, &camera(view.spec.clone()), &plan(20, 16, 1000).unwrap()).unwrap()
+    splatted(&view.scene, &camera(view.spec.clone()), &plan(21, 16, 1000).unwrap()).unwrap()
 }
 
 fn row(view: &View, reference: &Reference, bandwidth: Bandwidth, m: u32, seeds: u64) -> Row {
