@@ -54,8 +54,8 @@ fn photons_take_what_the_camera_has_for_them_and_a_refused_picture_takes_nothing
                 let with = |bytes| ball_on_table(table.clone(), bytes, bandwidth, [16, 12]);
                 // Threads and their stacks are made once.
                 peak(&with(1 << 20), 1 << 12);
-                let budget = 1u64 << 20;
-                let (peak, summary) = peak(&with(budget), 3 << 18);
+                let budget = 1u64 << 21;
+                let (peak, summary) = peak(&with(budget), 3 << 19);
                 // As they come, and in the map with its index.
                 let needed = summary.photons_kept * (2 * bytes_of_photon + 8);
                 println!(

@@ -370,7 +370,7 @@ fn a_clear_tank_keeps_the_light_that_it_reflects_totally_at_all_its_walls() {
         + &sphere("room", "black", [0.0; 3], 1.0, "")
         + &cuboid("tank", "water", [-0.2, -0.1, -0.1], [0.2, 0.1, 0.1], "")
         + &receiver("room");
-    let (outcome, estimate) = flux(&scene(&text), 1 << 7, 4);
+    let (outcome, estimate) = flux(&scene(&text), 1 << 9, 4);
     let kept = 1000.0 * part_within((1.0 - 1.0 / (ior * ior)).sqrt());
     println!("{kept} lm kept, {:?}, {estimate:?}", outcome.trapped_lm());
     assert_total("trapped", &outcome, outcome.trapped_lm(), kept);
