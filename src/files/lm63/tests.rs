@@ -48,8 +48,11 @@ impl Small<'_> {
         .join("\n")
     }
 
+    /// Without the warning that a table of 45 degrees is coarse, which has tests of its own (tests/readers).
     fn read(&self) -> Photometry {
-        parse(self.text().as_bytes(), "small.ies").unwrap()
+        let mut photometry = parse(self.text().as_bytes(), "small.ies").unwrap();
+        photometry.warnings.retain(|w| !w.found().contains("of the trapezoid"));
+        photometry
     }
 
     fn refused(&self) -> Diagnostic {
