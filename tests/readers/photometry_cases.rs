@@ -349,8 +349,8 @@ fn several_intensities_of_one_direction_are_told() {
             2,
             "-90 0 90",
             "-90 -45 0 45 90",
-            "0 9 0\n9 9 9\n9 9 9\n9 9 9\n9 9 9",
-            "0 to 9 cd at horizontal angle -90",
+            "3 9 3\n9 9 9\n9 9 9\n9 9 9\n9 9 9",
+            "3 to 9 cd at horizontal angle -90",
         ),
     ] {
         let warnings = File { kind, v, h, candela, ..FILE }.summary().warnings;

@@ -289,7 +289,9 @@ impl<'a> Reader<'a> {
         for (i, angle) in across.iter().enumerate().filter(|(_, angle)| poles.contains(&angle.value)) {
             let of_pole = |place: usize| if is_b { place / n_v == i } else { place % n_v == i };
             let values = web.candela.iter().enumerate().filter(|&(place, _)| of_pole(place)).map(|(_, &c)| c);
-            let (low, high) = values.fold((f64::MAX, 0.0f64), |(l, h), c| (l.min(c), h.max(c)));
+            // A plane that is 0 up to the pole is a shield's shadow, which no measurement blurs.
+            let lit = values.filter(|&c| c > 0.0);
+            let (low, high) = lit.fold((f64::MAX, 0.0f64), |(l, h), c| (l.min(c), h.max(c)));
             if high - low > NOISE * most {
                 let found =
                     format!("{low} to {high} cd at {name} angle {}, which is one direction", angle.value);
