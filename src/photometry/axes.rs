@@ -204,10 +204,10 @@ impl AxisCheck<'_> {
             self.tolerate(0, ENDS, "the one angle is taken for all of -90..90");
             return Ok(());
         }
-        if first != 0.0 && first != -90.0 {
+        if ![0.0, -90.0, -most].contains(&first) {
             self.tolerate(0, ENDS, "the intensity is taken as zero below it");
         }
-        if last != 90.0 {
+        if ![90.0, most].contains(&last) {
             self.tolerate(self.last(), ENDS, "the intensity is taken as zero beyond it");
         }
         Ok(())

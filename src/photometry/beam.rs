@@ -11,18 +11,16 @@ pub const FIELD_SHARE: f64 = 0.1;
 /// the intensity has fallen to `share` of that maximum, linear between the table's angles. `None` for a dark plane.
 ///
 /// The principal plane is C0-C180 (type C) or V = 0 (types A and B). The lobe is followed from the maximum to both
-/// sides as long as it stays above the share: a batwing whose middle falls below half counts one wing. Where the
+/// sides until it has fallen to the share, on a plateau to its beginning: a batwing whose middle falls below half counts
+/// one wing. Where the
 /// table ends above the share the lobe ends there; one that never falls is 360 degrees wide.
 pub fn lobe_angle_deg(web: &Web, share: f64) -> Option<f64> {
-    let profile = Profile::principal(web);
-    let peak = profile.peak()?;
-    let level = share * profile.intensity_cd[peak];
-    let after = profile.walk(peak, level, 1);
-    let before = profile.walk(peak, level, -1);
-    match (before, after) {
-        (Some(before), Some(after)) => Some((before + after).min(360.0)),
-        _ => Some(360.0),
-    }
+    Profile::principal(web).lobe_deg(share)
+}
+
+/// The same in the plane across: C90-C270 (type C) or H = 0 (types A and B).
+pub fn lobe_angle_across_deg(web: &Web, share: f64) -> Option<f64> {
+    Profile::across(web).lobe_deg(share)
 }
 
 /// Intensities along one plane.
@@ -36,32 +34,48 @@ struct Profile {
 impl Profile {
     fn principal(web: &Web) -> Self {
         match web.photometric_type {
-            PhotometricType::C => Self::c0_c180(web),
-            _ => Self::horizontal(web),
+            PhotometricType::C => Self::through_axis(web, 0.0),
+            _ => Self::flat(&web.horizontal_deg, |h| web.intensity_cd(0.0, h)),
         }
     }
 
-    /// V along C0 counts positive, along C180 negative.
-    fn c0_c180(web: &Web) -> Self {
+    fn across(web: &Web) -> Self {
+        match web.photometric_type {
+            PhotometricType::C => Self::through_axis(web, 90.0),
+            _ => Self::flat(&web.vertical_deg, |v| web.intensity_cd(v, 0.0)),
+        }
+    }
+
+    fn lobe_deg(&self, share: f64) -> Option<f64> {
+        let peak = self.peak()?;
+        let level = share * self.intensity_cd[peak];
+        match (self.walk(peak, level, -1), self.walk(peak, level, 1)) {
+            (Some(before), Some(after)) => Some((before + after).min(360.0)),
+            _ => Some(360.0),
+        }
+    }
+
+    /// V along the plane H counts positive, along the one opposite negative.
+    fn through_axis(web: &Web, h: f64) -> Self {
         let v = &web.vertical_deg;
-        let c180 = v.iter().rev().filter(|&&v| v > 0.0).map(|&v| (-v, web.intensity_cd(v, 180.0)));
-        let c0 = v.iter().map(|&v| (v, web.intensity_cd(v, 0.0)));
+        let opposite = v.iter().rev().filter(|&&v| v > 0.0).map(|&v| (-v, web.intensity_cd(v, h + 180.0)));
+        let plane = v.iter().map(|&v| (v, web.intensity_cd(v, h)));
         // A table that ends before the nadir is dark in between: the lobe must not leap across.
         let edge = v.first().copied().filter(|&v| v > 0.0);
         let dark = edge.into_iter().flat_map(|v| [(-v, 0.0), (v, 0.0)]);
-        let (angle_deg, intensity_cd) = c180.chain(dark).chain(c0).unzip();
+        let (angle_deg, intensity_cd) = opposite.chain(dark).chain(plane).unzip();
         Self { angle_deg, intensity_cd, closed: v.last() == Some(&180.0) }
     }
 
-    fn horizontal(web: &Web) -> Self {
-        let h = &web.horizontal_deg;
-        let mirrored = h.first() == Some(&0.0) && h.len() > 1;
-        let mut angle_deg: Vec<f64> = if h.len() == 1 { vec![-90.0, 90.0] } else { h.clone() };
+    /// Along one axis of types A and B.
+    fn flat(axis: &[f64], at: impl Fn(f64) -> f64) -> Self {
+        let mirrored = axis.first() == Some(&0.0) && axis.len() > 1;
+        let mut angle_deg: Vec<f64> = if axis.len() == 1 { vec![-90.0, 90.0] } else { axis.to_vec() };
         if mirrored {
-            let left: Vec<f64> = h.iter().skip(1).rev().map(|h| -h).collect();
-            angle_deg.splice(0..0, left);
+            let below: Vec<f64> = axis.iter().skip(1).rev().map(|a| -a).collect();
+            angle_deg.splice(0..0, below);
         }
-        let intensity_cd = angle_deg.iter().map(|&h| web.intensity_cd(0.0, h)).collect();
+        let intensity_cd = angle_deg.iter().map(|&a| at(a)).collect();
         Self { angle_deg, intensity_cd, closed: false }
     }
 
@@ -92,8 +106,10 @@ impl Profile {
             };
             let width = (self.angle_deg[next] - self.angle_deg[at]).abs();
             let (here, there) = (self.intensity_cd[at], self.intensity_cd[next]);
-            if there < level {
-                return Some(gone + width * (here - level) / (here - there));
+            // A table that states just the share has fallen to it there, but for the rounding of both products.
+            if there <= level * (1.0 + 4.0 * f64::EPSILON) {
+                let part = (here - level) / (here - there);
+                return Some(gone + width * part.min(1.0));
             }
             gone += width;
             at = next;
@@ -138,5 +154,6 @@ mod tests {
             Web::new(B, vec![-10.0, 0.0, 10.0], vec![0.0, 40.0], vec![0.0, 100.0, 0.0, 0.0, 0.0, 0.0])
                 .unwrap();
         assert_eq!(beam(&flood), Some(40.0));
+        assert_eq!(lobe_angle_across_deg(&flood, BEAM_SHARE), Some(10.0));
     }
 }

@@ -1,18 +1,14 @@
 //! Luminous flux of a web: the industry's trapezoid, and the exact integral of the bilinear table.
 //!
-//! The two differ by up to a per cent for coarse tables. The first is the number on data sheets (AGi32 Photometric
+//! The two differ by less than a per cent for most tables, by more where a beam is narrow for the steps of its angles.
+//! The first is the number on data sheets (AGi32 Photometric
 //! Toolbox); the second is what photons carry that are emitted by bilinear interpolation.
 
-use super::{FullGrid, Web};
+use super::FullGrid;
 
-/// Flux in lm of `value x multiplier`, as the lighting industry integrates it: over V the mean of neighbouring
-/// candela times the exact solid angle between them (C: cos V1 - cos V2; A: sin V2 - sin V1; B: the same over H),
-/// over the other angle the trapezoid. No ballast factor, no field 12.
-pub fn flux_lm(web: &Web) -> f64 {
-    trapezoid_lm(&web.full_grid())
-}
-
-/// The industry's trapezoid over an unfolded grid, lm.
+/// Flux in lm of `value x multiplier` over an unfolded grid, as the lighting industry integrates it: over V the mean of
+/// neighbouring candela times the exact solid angle between them (C: cos V1 - cos V2; A: sin V2 - sin V1; B: the same over
+/// H), over the other angle the trapezoid. No ballast factor, no field 12.
 pub fn trapezoid_lm(grid: &FullGrid) -> f64 {
     sum_bands(grid, |low, high| {
         let (mid, half) = middle(low, high);
@@ -81,6 +77,7 @@ fn sum_bands(grid: &FullGrid, weights: impl Fn(f64, f64) -> (f64, f64)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::PhotometricType::{A, B, C};
+    use super::super::Web;
     use super::*;
     use std::f64::consts::PI;
 
@@ -168,16 +165,16 @@ mod tests {
     fn closed_forms() {
         let v: Vec<f64> = (0..=36).map(|i| f64::from(i) * 2.5).collect();
         let ones = Web::new(C, vec![0.0, 180.0], vec![0.0], vec![1.0; 2]).unwrap();
-        assert!((flux_lm(&ones) - 4.0 * PI).abs() < 1e-14);
+        assert!((trapezoid_lm(&ones.full_grid()) - 4.0 * PI).abs() < 1e-14);
         assert!((bilinear_lm(&ones.full_grid()) - 4.0 * PI).abs() < 1e-14);
         for t in [A, B] {
             let half = Web::new(t, vec![-90.0, 90.0], vec![-90.0, 90.0], vec![1.0; 4]).unwrap();
-            assert!((flux_lm(&half) - 2.0 * PI).abs() < 1e-14, "type {t:?}: half a sphere");
+            assert!((trapezoid_lm(&half.full_grid()) - 2.0 * PI).abs() < 1e-14, "type {t:?}: half a sphere");
         }
         // The trapezoid is exact for I0 cos V: pi I0.
         let cosine =
             Web::new(C, v.clone(), vec![0.0], v.iter().map(|v| v.to_radians().cos()).collect()).unwrap();
-        assert!((flux_lm(&cosine) - PI).abs() < 1e-14);
+        assert!((trapezoid_lm(&cosine.full_grid()) - PI).abs() < 1e-14);
         // I = 1 - V/pi over the sphere, linear in V: 2 pi Int (1 - t/pi) sin t dt = 2 pi.
         let linear = Web::new(C, vec![0.0, 180.0], vec![0.0], vec![1.0, 0.0]).unwrap();
         assert!((bilinear_lm(&linear.full_grid()) - 2.0 * PI).abs() < 1e-14);

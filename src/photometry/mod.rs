@@ -106,7 +106,7 @@ pub struct Photometry {
     pub opening: LuminousOpening,
     /// The intensities.
     pub web: Web,
-    /// `[_TOTALLUMINAIRELUMENS]`, lm, if the file declares it: the maker's own number, without ballast factor.
+    /// `[_TOTALLUMINAIRELUMENS]`, lm, if the file declares it and it can be read: the maker's own number, without ballast factor.
     pub flux_declared_lm: Option<f64>,
     /// What is wrong with the file and was tolerated.
     pub warnings: Vec<Diagnostic>,
@@ -120,6 +120,11 @@ impl Photometry {
         } else {
             self.ballast_factor
         }
+    }
+
+    /// Lumens of all lamps together, as the file declares them; `None` for absolute photometry, and where they are 0.
+    pub fn lamps_lm(&self) -> Option<f64> {
+        self.lumens_per_lamp.map(|each| self.lamps * each).filter(|&lm| lm > 0.0)
     }
 
     /// Text of the first label with this keyword (case ignored, no brackets).

@@ -1,7 +1,7 @@
 //! What a lighting engineer asks of a photometric file, in one record.
 
-use super::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_deg};
-use super::{Photometry, flux};
+use super::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_across_deg, lobe_angle_deg};
+use super::{Photometry, Tilt, TiltTable, flux};
 use serde::Serialize;
 
 /// The record of `caustix photometry --json`.
@@ -9,20 +9,40 @@ use serde::Serialize;
 /// `flux_lm` and `max_candela` count value x multiplier only; the other two fluxes say in their names what they add.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
+    /// The file, as the caller named it.
+    pub file: String,
     /// `IES LM-63`.
     pub format: &'static str,
     /// Year of the edition whose rules were applied; `1986` when the file has no version line.
     pub revision: &'static str,
     /// `A`, `B` or `C`.
     pub photometric_type: &'static str,
-    /// Flux by the industry's trapezoid (`flux::flux_lm`), lm.
+    /// Flux by the industry's trapezoid (`flux::trapezoid_lm`), lm.
     pub flux_lm: f64,
     /// `flux_lm` times ballast factor, and times field 12 in 1986 and 1991, lm.
     pub flux_with_factors_lm: f64,
     /// The bilinear table integrated exactly, with those factors, lm: what a renderer emits.
     pub flux_emitted_lm: f64,
-    /// `[_TOTALLUMINAIRELUMENS]`, lm.
+    /// `flux_emitted_lm / flux_with_factors_lm - 1`: how far the two integrals of one table are apart; `None` in the dark.
+    pub flux_emitted_relative: Option<f64>,
+    /// `[_TOTALLUMINAIRELUMENS]`, lm; `None` also where it cannot be read, which `warnings` says.
     pub flux_declared_lm: Option<f64>,
+    /// Number of lamps.
+    pub lamps: f64,
+    /// Lumens per lamp; `None` for absolute photometry.
+    pub lumens_per_lamp: Option<f64>,
+    /// Their product, lm; `None` for absolute photometry, and where it is 0.
+    pub lamps_lm: Option<f64>,
+    /// `flux_lm / lamps_lm`.
+    pub light_output_ratio: Option<f64>,
+    /// Candela multiplier, which is in all fluxes and intensities.
+    pub multiplier: f64,
+    /// Ballast factor.
+    pub ballast_factor: f64,
+    /// Field 12 as written: a factor in 1986 and 1991, later reserved, and a code in 2019.
+    pub field12: String,
+    /// Lamp tilt.
+    pub tilt: TiltRecord,
     /// Largest intensity, cd.
     pub max_candela: f64,
     /// Where it is; of equal ones the first in the file.
@@ -39,12 +59,60 @@ pub struct Summary {
     pub beam_angle_deg: Option<f64>,
     /// Full angle at 10 %.
     pub field_angle_deg: Option<f64>,
+    /// The beam angle in the plane across: C90-C270 (type C) or H = 0 (types A and B).
+    pub beam_angle_across_deg: Option<f64>,
+    /// The field angle there.
+    pub field_angle_across_deg: Option<f64>,
     /// Input power, W; 0 where the file does not know it.
     pub input_watts: f64,
     /// `flux_with_factors_lm` per watt of input; `None` without a power.
     pub efficacy_lm_w: Option<f64>,
+    /// Labels in the order of the file.
+    pub labels: Vec<Label>,
     /// What was tolerated.
     pub warnings: Vec<String>,
+}
+
+/// One label of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Label {
+    /// Keyword without brackets; empty for a free line.
+    pub keyword: String,
+    /// Text; line feeds where `[MORE]` continued it.
+    pub text: String,
+}
+
+/// What a file says about lamp tilt. Never applied.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TiltRecord {
+    /// `none`, `include` or `file`.
+    pub kind: &'static str,
+    /// The name of the tilt file.
+    pub file: Option<String>,
+    /// Lamp-to-luminaire geometry: 1, 2 or 3; `None` without a table, or where its file was not read.
+    pub geometry: Option<u32>,
+    /// Mounting angles, degrees.
+    pub angles_deg: Vec<f64>,
+    /// Factors at those angles.
+    pub factors: Vec<f64>,
+}
+
+impl TiltRecord {
+    fn new(tilt: &Tilt) -> Self {
+        let (kind, file, table) = match tilt {
+            Tilt::None => ("none", None, None),
+            Tilt::Include(table) => ("include", None, Some(table)),
+            Tilt::File { name, table } => ("file", Some(name.clone()), table.as_ref()),
+        };
+        let list = |of: fn(&TiltTable) -> &Vec<f64>| table.map(|t| of(t).clone()).unwrap_or_default();
+        Self {
+            kind,
+            file,
+            geometry: table.map(|t| t.geometry),
+            angles_deg: list(|t| &t.angles_deg),
+            factors: list(|t| &t.factors),
+        }
+    }
 }
 
 /// A direction in the file's angles.
@@ -72,16 +140,29 @@ impl Summary {
         let grid = web.full_grid();
         let flux_lm = flux::trapezoid_lm(&grid);
         let flux_with_factors_lm = flux_lm * photometry.factor();
+        let flux_emitted_lm = flux::bilinear_lm(&grid) * photometry.factor();
+        let lamps_lm = photometry.lamps_lm();
         let max = web.max_intensity();
         let watts = photometry.input_watts;
         Self {
+            file: photometry.file.clone(),
             format: "IES LM-63",
             revision: photometry.revision.name(),
             photometric_type: web.photometric_type.name(),
             flux_lm,
             flux_with_factors_lm,
-            flux_emitted_lm: flux::bilinear_lm(&grid) * photometry.factor(),
+            flux_emitted_lm,
+            flux_emitted_relative: (flux_with_factors_lm > 0.0)
+                .then(|| flux_emitted_lm / flux_with_factors_lm - 1.0),
             flux_declared_lm: photometry.flux_declared_lm,
+            lamps: photometry.lamps,
+            lumens_per_lamp: photometry.lumens_per_lamp,
+            lamps_lm,
+            light_output_ratio: lamps_lm.map(|lm| flux_lm / lm),
+            multiplier: photometry.multiplier,
+            ballast_factor: photometry.ballast_factor,
+            field12: photometry.field12_text.clone(),
+            tilt: TiltRecord::new(&photometry.tilt),
             max_candela: max.intensity_cd,
             max_at: Direction { vertical_deg: max.vertical_deg, horizontal_deg: max.horizontal_deg },
             vertical_angles: web.vertical_deg.len(),
@@ -93,8 +174,15 @@ impl Summary {
             },
             beam_angle_deg: lobe_angle_deg(web, BEAM_SHARE),
             field_angle_deg: lobe_angle_deg(web, FIELD_SHARE),
+            beam_angle_across_deg: lobe_angle_across_deg(web, BEAM_SHARE),
+            field_angle_across_deg: lobe_angle_across_deg(web, FIELD_SHARE),
             input_watts: watts,
             efficacy_lm_w: (watts > 0.0).then(|| flux_with_factors_lm / watts),
+            labels: photometry
+                .labels
+                .iter()
+                .map(|(keyword, text)| Label { keyword: keyword.clone(), text: text.clone() })
+                .collect(),
             warnings: photometry.warnings.iter().map(ToString::to_string).collect(),
         }
     }
@@ -120,6 +208,19 @@ mod tests {
             "flux_lm",
             "flux_with_factors_lm",
             "flux_emitted_lm",
+            "file",
+            "flux_emitted_relative",
+            "lamps",
+            "lumens_per_lamp",
+            "lamps_lm",
+            "light_output_ratio",
+            "multiplier",
+            "ballast_factor",
+            "field12",
+            "tilt",
+            "beam_angle_across_deg",
+            "field_angle_across_deg",
+            "labels",
             "flux_declared_lm",
             "max_candela",
             "max_at",

@@ -20,6 +20,33 @@ fn assert_keys(value: &Value, contract: &[&str], added: &[&str]) {
 }
 
 #[test]
+fn photometry_says_a_warning_once() {
+    let s = Stranger::new();
+    let text = "IESNA91\n[LAMP] two\nTILT=INCLUDE\n1 2 0 90 1 0.9\n2 100 1.5 2 1 1 2 0 0 0\n0.9 0.8 10\n0 90\n0\n100 100\n";
+    s.write("dark.ies", text);
+    let (code, out, err) = s.types("photometry dark.ies");
+    assert_eq!(code, 0, "{err}");
+    // 150 cd over half a sphere: 942.5 lm, out of lamps of 200.
+    assert_eq!((err.matches("942.5 lm").count(), err.lines().count()), (1, 1), "{err}");
+    assert!(out.contains("2 x 100 lm; the table has 471.2 % of it") && !out.contains("warning"), "{out}");
+    let (_, out, err) = s.types("photometry dark.ies --json");
+    assert_eq!(err, "");
+    let json: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(json["warnings"].as_array().unwrap().len(), 1);
+    assert_eq!(json["file"], "dark.ies");
+    assert_eq!(json["labels"], serde_json::json!([{"keyword": "LAMP", "text": "two"}]));
+    for (key, value) in
+        [("lamps", 2.0), ("lumens_per_lamp", 100.0), ("multiplier", 1.5), ("ballast_factor", 0.9)]
+    {
+        assert_eq!(json[key], value, "{key}");
+    }
+    let tilt = serde_json::json!({
+        "kind": "include", "file": null, "geometry": 1, "angles_deg": [0.0, 90.0], "factors": [1.0, 0.9]
+    });
+    assert_eq!((&json["tilt"], &json["field12"]), (&tilt, &serde_json::json!("0.8")));
+}
+
+#[test]
 fn photometry_json_has_the_keys_of_the_contract() {
     let s = Stranger::new();
     let (code, out, err) = s.types(&format!("photometry {} --json", in_project("ies/headlamp_a.ies")));
@@ -45,7 +72,24 @@ fn photometry_json_has_the_keys_of_the_contract() {
         "flux_with_factors_lm",
         "flux_emitted_lm",
     ];
-    assert_keys(&json, &contract, &[]);
+    let added = [
+        "file",
+        "flux_emitted_relative",
+        "lamps",
+        "lumens_per_lamp",
+        "lamps_lm",
+        "light_output_ratio",
+        "multiplier",
+        "ballast_factor",
+        "field12",
+        "tilt",
+        "labels",
+        "beam_angle_across_deg",
+        "field_angle_across_deg",
+    ];
+    assert_keys(&json, &contract, &added);
+    assert_keys(&json["tilt"], &["kind", "file", "geometry", "angles_deg", "factors"], &[]);
+    assert_keys(&json["labels"][0], &["keyword", "text"], &[]);
     assert_keys(&json["max_at"], &["vertical_deg", "horizontal_deg"], &[]);
     assert_keys(&json["luminous_opening"], &["shape", "size_m"], &[]);
     // The table of ies/README.md, computed outside the project.

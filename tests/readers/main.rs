@@ -15,6 +15,7 @@ mod broken_scene;
 mod damage;
 mod mistakes;
 mod mistakes_warned;
+mod photometry_cases;
 mod photometry_damaged;
 mod photometry_own;
 mod photometry_real;

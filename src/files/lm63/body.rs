@@ -1,5 +1,6 @@
 //! The numbers: tilt table, the record of ten, the record of three, angles and candela.
 
+use super::angles;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::lm63::tokens::{Number, Tokens};
 use crate::photometry::axes::{Axis, AxisNote, check_axes};
@@ -136,16 +137,30 @@ impl<'a> Reader<'a> {
         let ballast_factor = self.factor("ballast factor")?.value;
         let field12 = self.field12(revision)?;
         let input_watts = self.tolerated("input watts", |x| x >= 0.0, "0 or more", "read as 0")?.max(0.0);
-        let vertical = self.tokens.numbers(n_v, "vertical angle")?;
-        let horizontal = self.tokens.numbers(n_h, "horizontal angle")?;
+        let mut vertical = self.tokens.numbers(n_v, "vertical angle")?;
+        let mut horizontal = self.tokens.numbers(n_h, "horizontal angle")?;
+        let snapped = [angles::snap("vertical", &mut vertical), angles::snap("horizontal", &mut horizontal)];
+        let (turned, said) = angles::turned(photometric_type, &horizontal).unzip();
+        for said in snapped.into_iter().flatten().chain(said) {
+            self.warn(said.offset, Kind::Range, &said.found, &said.required, &said.hint);
+        }
+        let stored = horizontal.clone();
+        if let Some(order) = &turned {
+            horizontal = order.iter().map(|&(i, value)| Number { value, ..stored[i] }).collect();
+        }
         self.check_angles(revision, photometric_type, &vertical, &horizontal)?;
+        let mut candela = self.candela(n_v * n_h, multiplier)?;
+        self.check_seam(photometric_type, &candela, &stored);
+        if let Some(order) = &turned {
+            candela = order.iter().flat_map(|&(i, _)| &candela[i * n_v..(i + 1) * n_v]).copied().collect();
+        }
         let web = Web {
             photometric_type,
             vertical_deg: values(&vertical),
             horizontal_deg: values(&horizontal),
-            candela: self.candela(n_v * n_h, multiplier)?,
+            candela,
         };
-        self.check_seam(&web, &horizontal);
+        self.check_poles(&web, [&vertical, &horizontal]);
         Ok(Photometry {
             file: String::new(),
             revision,
@@ -246,19 +261,43 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there.
-    fn check_seam(&mut self, web: &Web, horizontal: &[Number]) {
-        let (n_v, n_h) = (web.vertical_deg.len(), web.horizontal_deg.len());
-        let h = &web.horizontal_deg;
-        let whole = web.photometric_type == PhotometricType::C && h[0] == 0.0 && h[n_h - 1] == 360.0;
-        if !whole {
+    /// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there. (Of H = -180
+    /// and H = 180 the latter is kept.)
+    fn check_seam(&mut self, photometric_type: PhotometricType, candela: &[f64], stored: &[Number]) {
+        let (first, last) = (stored[0], stored[stored.len() - 1]);
+        if photometric_type != PhotometricType::C || last.value - first.value != 360.0 {
             return;
         }
-        let (first, last) = (&web.candela[..n_v], &web.candela[(n_h - 1) * n_v..]);
-        let step = first.iter().zip(last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        if step > NOISE * web.max_intensity().intensity_cd {
-            let found = format!("planes H = 0 and H = 360 that differ by up to {step} cd");
-            self.warn(horizontal[n_h - 1].offset, Kind::Range, &found, "one plane, twice", "both are kept");
+        let n_v = candela.len() / stored.len();
+        let planes = candela[..n_v].iter().zip(&candela[candela.len() - n_v..]);
+        let step = planes.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if step > NOISE * candela.iter().copied().fold(0.0, f64::max) {
+            let ends = format!("H = {} and H = {}", first.value, last.value);
+            let found = format!("planes {ends} that differ by up to {step} cd");
+            let hint = if first.value == 0.0 { "both are kept" } else { "the last is kept" };
+            self.warn(last.offset, Kind::Range, &found, "one plane, twice", hint);
+        }
+    }
+
+    /// At a pole all planes have one direction, and one intensity. Where a file gives several, the web has all of them there.
+    fn check_poles(&mut self, web: &Web, [vertical, horizontal]: [&[Number]; 2]) {
+        let n_v = vertical.len();
+        let is_b = web.photometric_type == PhotometricType::B;
+        let (name, across) = if is_b { ("horizontal", horizontal) } else { ("vertical", vertical) };
+        let poles = if web.photometric_type == PhotometricType::C { [0.0, 180.0] } else { [-90.0, 90.0] };
+        let most = web.max_intensity().intensity_cd;
+        for (i, angle) in across.iter().enumerate().filter(|(_, angle)| poles.contains(&angle.value)) {
+            let of_pole = |place: usize| if is_b { place / n_v == i } else { place % n_v == i };
+            let values = web.candela.iter().enumerate().filter(|&(place, _)| of_pole(place)).map(|(_, &c)| c);
+            // A plane that is 0 up to the pole is a shield's shadow, which no measurement blurs.
+            let lit = values.filter(|&c| c > 0.0);
+            let (low, high) = lit.fold((f64::MAX, 0.0f64), |(l, h), c| (l.min(c), h.max(c)));
+            if high - low > NOISE * most {
+                let found =
+                    format!("{low} to {high} cd at {name} angle {}, which is one direction", angle.value);
+                let hint = "all are kept: light near it depends on the plane";
+                self.warn(angle.offset, Kind::Range, &found, "one intensity in all planes", hint);
+            }
         }
     }
 

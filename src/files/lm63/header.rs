@@ -59,22 +59,46 @@ fn label_line(line: &str) -> IResult<&str, (&str, &str)> {
     Ok((line, (keyword.trim(), text.trim())))
 }
 
-/// The revision of a version line, and whether the line is as its standard spells it; `None`: a free label.
-fn revision_of(line: &str) -> Option<(Revision, bool)> {
-    let line: String = line.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect();
-    let year = line.strip_prefix("IESNA:LM-63-").or_else(|| line.strip_prefix("IES:LM-63-"));
-    Some(match (line.as_str(), year) {
-        ("IESNA91", _) => (Revision::Y1991, true),
-        ("IESNA:LM-63-1995", _) => (Revision::Y1995, true),
-        ("IESNA:LM-63-2002", _) => (Revision::Y2002, true),
-        ("IES:LM-63-2019", _) => (Revision::Y2019, true),
-        ("IESNA86", _) | (_, Some("1986")) => (Revision::Y1986, false),
-        (_, Some("1991")) => (Revision::Y1991, false),
-        ("IESNA95", _) | (_, Some("1995")) => (Revision::Y1995, false),
-        (_, Some("2002")) => (Revision::Y2002, false),
-        (other, _) if other.starts_with("IES") => (Revision::Y2019, false),
-        _ => return None,
-    })
+/// What a line says about the edition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Version {
+    /// It is a version line, as its standard spells it.
+    Spelt(Revision),
+    /// It names an edition in another way: two digits, no colon, a wrong prefix.
+    Meant(Revision),
+    /// It names one and goes on, or begins as a version line does: told only on the first line.
+    Begun(Revision),
+}
+
+/// What a line says about the edition; `None`: a free label. Signs and blanks don't count: `IESNA LM-63-02` is LM-63-2002.
+fn version_of(line: &str) -> Option<Version> {
+    let close: String = line.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect();
+    match close.as_str() {
+        "IESNA91" => return Some(Version::Spelt(Revision::Y1991)),
+        "IESNA:LM-63-1995" => return Some(Version::Spelt(Revision::Y1995)),
+        "IESNA:LM-63-2002" => return Some(Version::Spelt(Revision::Y2002)),
+        "IES:LM-63-2019" => return Some(Version::Spelt(Revision::Y2019)),
+        _ => {}
+    }
+    // What must not be taken for an edition: the number of a report, the standard's name in a sentence.
+    let word: String = close.chars().filter(|c| !matches!(c, ':' | '-' | '_' | '.' | '/')).collect();
+    let of_maker = word.strip_prefix("IESNA").or_else(|| word.strip_prefix("IES"));
+    let of_standard = of_maker.unwrap_or(&word).strip_prefix("LM63");
+    let year = of_standard.or(of_maker)?;
+    let digits = year.find(|c: char| !c.is_ascii_digit()).unwrap_or(year.len());
+    let revision = match &year[..digits] {
+        "86" | "1986" => Some(Revision::Y1986),
+        "91" | "1991" => Some(Revision::Y1991),
+        "95" | "1995" => Some(Revision::Y1995),
+        "02" | "2002" => Some(Revision::Y2002),
+        "19" | "2019" => Some(Revision::Y2019),
+        _ => None,
+    };
+    match revision {
+        Some(revision) if digits == year.len() => Some(Version::Meant(revision)),
+        Some(revision) if of_standard.is_some() && of_maker.is_some() => Some(Version::Begun(revision)),
+        _ => of_maker.map(|_| Version::Begun(Revision::Y2019)),
+    }
 }
 
 /// Reads up to and with the TILT line.
@@ -82,25 +106,19 @@ fn revision_of(line: &str) -> Option<(Revision, bool)> {
 /// # Errors
 /// [`Kind::Missing`] when there is no TILT line, at the first line of numbers; [`Kind::Limit`] for a flood of labels.
 pub(crate) fn read_header(text: &str) -> Result<Header<'_>> {
-    let (mut revision, mut labels, mut warnings) = (Revision::Y1986, Vec::new(), Vec::new());
-    let mut first = true;
+    let (mut version, mut labels) = (FoundVersion::default(), Vec::new());
     let mut numbers_at = None;
     for (offset, line) in lines(text) {
         if let Ok((_, value)) = tilt_line(line) {
             let start = offset + line.len() - value.trim_start().len();
             let (tilt, body) = ((value.trim(), start), offset + line.len());
+            let (revision, warnings) = version.conclude();
             return Ok(Header { revision, labels, tilt, body, warnings });
         }
         if line.trim().is_empty() {
             continue;
         }
-        if std::mem::take(&mut first)
-            && let Some((found, as_spelt)) = revision_of(line)
-        {
-            revision = found;
-            if !as_spelt {
-                warnings.push(version_warning(line, revision).at(line_column(text, offset).0, 1));
-            }
+        if version.takes(line, || line_column(text, offset).0) {
             continue;
         }
         if numbers_at.is_none()
@@ -142,10 +160,62 @@ fn is_eulumdat(text: &str) -> bool {
         && (0.0..=180.0).contains(&between_angles)
 }
 
-fn version_warning(line: &str, revision: Revision) -> Diagnostic {
-    let required = "IESNA91, IESNA:LM-63-1995, IESNA:LM-63-2002 or IES:LM-63-2019";
-    Diagnostic::new(Kind::Unknown, format!("version line {}", quoted(line.trim())), required)
-        .hint(format!("read by the rules of {}", revision.name()))
+/// The edition that the lines before TILT have named.
+#[derive(Debug, Default)]
+struct FoundVersion {
+    /// Whether a line was seen.
+    begun: bool,
+    /// The first line, if it only begins as a version line does: a later one that names an edition outdoes it.
+    guess: Option<(Revision, Diagnostic)>,
+    /// The edition that a line names.
+    named: Option<Revision>,
+    warnings: Vec<Diagnostic>,
+}
+
+impl FoundVersion {
+    /// Looks at one line, whose number `at` gives; whether it is the version line, and no label.
+    fn takes(&mut self, line: &str, at: impl Fn() -> usize) -> bool {
+        let is_first = !std::mem::replace(&mut self.begun, true);
+        let version = version_of(line);
+        let warning = |revision: Revision, required: &str, does: &str| {
+            Diagnostic::new(Kind::Unknown, format!("version line {}", quoted(line.trim())), required)
+                .at(at(), 1)
+                .hint(format!("{does} the rules of {}", revision.name()))
+        };
+        let spellings = "IESNA91, IESNA:LM-63-1995, IESNA:LM-63-2002 or IES:LM-63-2019";
+        match (version, self.named) {
+            (Some(Version::Spelt(revision)), None) if is_first => self.named = Some(revision),
+            (Some(Version::Meant(revision)), None) if is_first => {
+                self.named = Some(revision);
+                self.warnings.push(warning(revision, spellings, "read by"));
+            }
+            (Some(Version::Begun(revision)), None) if is_first => {
+                self.guess = Some((revision, warning(revision, spellings, "read by")));
+            }
+            (Some(Version::Spelt(revision) | Version::Meant(revision)), None) => {
+                self.named = Some(revision);
+                self.warnings.push(warning(revision, "the version line as the first one", "read by"));
+            }
+            (Some(Version::Spelt(revision) | Version::Meant(revision)), Some(named)) if revision != named => {
+                self.warnings.push(warning(named, "one version line", "it is not followed: read by"));
+                return false;
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// The revision, and what is to be said about it.
+    fn conclude(mut self) -> (Revision, Vec<Diagnostic>) {
+        match (self.named, self.guess) {
+            (Some(revision), _) => (revision, self.warnings),
+            (None, Some((revision, warning))) => {
+                self.warnings.push(warning);
+                (revision, self.warnings)
+            }
+            (None, None) => (Revision::Y1986, self.warnings),
+        }
+    }
 }
 
 fn add_label(labels: &mut Vec<(String, String)>, line: &str) {
@@ -166,19 +236,28 @@ mod tests {
     #[test]
     fn version_lines_of_the_wild() {
         for (line, expected) in [
-            ("IESNA91", Some((Revision::Y1991, true))),
-            ("  IESNA:LM-63-1995 ", Some((Revision::Y1995, true))),
-            ("IESNA:LM-63-2002", Some((Revision::Y2002, true))),
-            ("IES:LM-63-2019", Some((Revision::Y2019, true))),
-            ("IESNA: LM-63-2002", Some((Revision::Y2002, true))),
-            ("IESNA95", Some((Revision::Y1995, false))),
-            ("IESNA:LM-63-1991", Some((Revision::Y1991, false))),
-            ("IESNA:LM-63-2019", Some((Revision::Y2019, false))),
-            ("IES:LM-63-2031", Some((Revision::Y2019, false))),
+            ("IESNA91", Some(Version::Spelt(Revision::Y1991))),
+            ("  IESNA:LM-63-1995 ", Some(Version::Spelt(Revision::Y1995))),
+            ("IESNA:LM-63-2002", Some(Version::Spelt(Revision::Y2002))),
+            ("IES:LM-63-2019", Some(Version::Spelt(Revision::Y2019))),
+            ("IESNA: LM-63-2002", Some(Version::Spelt(Revision::Y2002))),
+            ("IESNA86", Some(Version::Meant(Revision::Y1986))),
+            ("IESNA95", Some(Version::Meant(Revision::Y1995))),
+            ("IESNA:LM-63-1991", Some(Version::Meant(Revision::Y1991))),
+            ("IESNA:LM-63-2019", Some(Version::Meant(Revision::Y2019))),
+            ("IESNA:LM-63-91", Some(Version::Meant(Revision::Y1991))),
+            ("ies:lm-63-02", Some(Version::Meant(Revision::Y2002))),
+            ("IESNA LM-63-2002", Some(Version::Meant(Revision::Y2002))),
+            ("LM-63-1995", Some(Version::Meant(Revision::Y1995))),
+            ("IESNA:LM-63-1991 by a tool", Some(Version::Begun(Revision::Y1991))),
+            ("IES:LM-63-2031", Some(Version::Begun(Revision::Y2019))),
+            ("IES file of a tool", Some(Version::Begun(Revision::Y2019))),
+            ("LM-63-1991 is the format", None),
+            ("[IESNA91]", None),
             ("ERCO Leuchten GmbH", None),
             ("REPORT NUMBER: 1", None),
         ] {
-            assert_eq!(revision_of(line), expected, "{line}");
+            assert_eq!(version_of(line), expected, "{line}");
         }
     }
 

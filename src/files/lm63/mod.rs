@@ -13,9 +13,11 @@
 //! V[nV]  H[nH]  candela[nH][nV]
 //! ```
 
+mod angles;
 mod body;
 mod commas;
 mod decode;
+mod doubts;
 mod header;
 mod tokens;
 
@@ -24,7 +26,7 @@ pub use body::generation_type;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bytes::{check_length, read_capped};
 use crate::files::excerpt::quoted;
-use crate::photometry::{Photometry, Tilt, TiltTable, flux};
+use crate::photometry::{Photometry, Tilt, TiltTable};
 use body::Reader;
 use header::{Header, has_tilt_line, read_header};
 use std::path::Path;
@@ -32,9 +34,6 @@ use std::rc::Rc;
 
 /// Larger files are refused: the largest real one has 1.3 MB.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
-
-/// Deviation of the declared from the integrated flux that is worth a warning: real files agree within 0.25 %.
-const DECLARED_TOLERANCE: f64 = 3e-3;
 
 /// Gives the bytes of the tilt file of this name, which has no folder.
 pub(crate) type TiltFile<'a> = &'a mut dyn FnMut(&str) -> Result<Rc<[u8]>>;
@@ -87,7 +86,7 @@ fn parse_body(text: &str, header: Header<'_>, tilt_file: TiltFile<'_>) -> Result
     let luminaire = reader.luminaire(header.revision)?;
     let surplus = warn_about_rest(&mut reader);
     let mut photometry = Photometry { labels: header.labels, tilt, warnings: reader.warnings, ..luminaire };
-    compare_declared(&mut photometry);
+    doubts::compare(&mut photometry);
     Ok((photometry, surplus))
 }
 
@@ -156,24 +155,6 @@ fn warn_about_rest(reader: &mut Reader) -> u64 {
         reader.warn(offset, Kind::Syntax, "text behind the end-of-file mark", required, "it is ignored");
     }
     0
-}
-
-/// The maker's own flux against ours: an independent check that comes with the file.
-fn compare_declared(photometry: &mut Photometry) {
-    let label =
-        photometry.label("_TOTALLUMINAIRELUMENS").or_else(|| photometry.label("TOTALLUMINAIRELUMENS"));
-    let number = label.and_then(|text| text.split_whitespace().next()).map(|word| word.replace(',', ""));
-    let declared = number.and_then(|word| word.parse::<f64>().ok()).filter(|&lm| lm > 0.0 && lm.is_finite());
-    photometry.flux_declared_lm = declared;
-    let flux_lm = flux::flux_lm(&photometry.web);
-    if flux_lm == 0.0 && photometry.multiplier > 0.0 {
-        photometry.warnings.push(Diagnostic::new(Kind::Range, "a flux of 0 lm", "some intensity above 0"));
-    }
-    if let Some(declared) = declared.filter(|&lm| (flux_lm - lm).abs() > DECLARED_TOLERANCE * lm) {
-        let found = format!("[_TOTALLUMINAIRELUMENS] {declared} for a table of {flux_lm:.1} lm");
-        let d = Diagnostic::new(Kind::Range, found, "agreement within 0.3 %");
-        photometry.warnings.push(d.hint("the table is used"));
-    }
 }
 
 #[cfg(test)]

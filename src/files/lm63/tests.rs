@@ -48,8 +48,9 @@ impl Small<'_> {
         .join("\n")
     }
 
+    /// Without the warning that a table of 45 degrees is coarse, which has tests of its own (tests/readers).
     fn read(&self) -> Photometry {
-        parse(self.text().as_bytes(), "small.ies").unwrap()
+        but_for_its_steps(parse(self.text().as_bytes(), "small.ies").unwrap())
     }
 
     fn refused(&self) -> Diagnostic {
@@ -68,6 +69,11 @@ impl Small<'_> {
         let warnings = self.warnings();
         assert!(warnings.iter().any(|w| w.contains(what)), "{what}: {warnings:?}");
     }
+}
+
+fn but_for_its_steps(mut photometry: Photometry) -> Photometry {
+    photometry.warnings.retain(|w| !w.found().contains("of the trapezoid"));
+    photometry
 }
 
 fn at(error: &Diagnostic) -> (Kind, usize, usize) {
@@ -106,13 +112,13 @@ fn every_encoding_and_line_end_gives_the_same_numbers() {
         text.replace(' ', "\n").replace("[TEST]\n", "[TEST] ").into_bytes(),
         format!("\n\n  {text}\u{1a}\0\0").into_bytes(),
     ] {
-        let p = parse(&bytes, "small.ies").unwrap();
+        let p = but_for_its_steps(parse(&bytes, "small.ies").unwrap());
         assert_eq!((&p.web, &p.labels, &p.warnings), (&plain.web, &plain.labels, &plain.warnings));
     }
     // 0xA0 and 0x96 of Windows-1252; Shift-JIS katakana.
     for label in [b"[TEST] a\xa0b\x96".as_slice(), b"[MANUFAC] \x8eO\x95H\x83d\x8b@".as_slice()] {
         let bytes = [b"IESNA91\n", label, &text.as_bytes()[text.find("\nTILT").unwrap()..]].concat();
-        assert_eq!(parse(&bytes, "small.ies").unwrap().web, plain.web);
+        assert_eq!(but_for_its_steps(parse(&bytes, "small.ies").unwrap()).web, plain.web);
     }
 }
 
@@ -163,7 +169,7 @@ fn tilt_is_read_and_never_applied() {
     std::fs::write(folder.path().join("lamp.tlt"), "1 3 0,45,90 1 .9 .8").unwrap();
     let path = folder.path().join("a.ies");
     std::fs::write(&path, Small { tilt: "TILT=C:\\LAMPS\\lamp.tlt", ..SMALL }.text()).unwrap();
-    let p = read(&path).unwrap();
+    let p = but_for_its_steps(read(&path).unwrap());
     assert_eq!(p.tilt, Tilt::File { name: "C:\\LAMPS\\lamp.tlt".into(), table: Some(table) });
     assert_eq!((p.file, p.warnings.len()), (path.display().to_string(), 0));
     assert_eq!(read(folder.path().join("none.ies")).unwrap_err().kind(), Kind::Io);
