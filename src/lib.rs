@@ -114,6 +114,7 @@ pub use surface::{Material, Reflectance};
 pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace, warnings};
 pub use sequence::Sequence;
 // Results:
+pub use estimate::extremes::Interval;
 pub use run::{Estimate, Outcome};
 pub use transport::{Census, Ledger};
 // Results as text and files; `write_map_...` write a receiver's map, `write_picture_...` a camera's picture:

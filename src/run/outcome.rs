@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::{Diagnostic, Kind};
+use crate::estimate::extremes::{Extremes, Map, Unknown};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
 use crate::tally::{Moments, Receivers};
@@ -128,7 +129,12 @@ impl Outcome {
     ///
     /// # Errors
     /// An interrupt before there was a result, for which it takes `fewest` photons.
-    pub(super) fn finished(mut self, scene: &Scene, started: Instant, fewest: u64) -> Result<Self> {
+    pub(super) fn finished(
+        mut self,
+        scene: &Scene,
+        started: Instant,
+        fewest: u64,
+    ) -> crate::error::Result<Self> {
         if self.photons == 0 {
             return Err(Diagnostic::new(
                 Kind::Interrupted,
@@ -173,6 +179,17 @@ impl Outcome {
     /// Illuminance in a cell of a receiver with this cell area, lx.
     pub fn illuminance_lx(&self, receiver: usize, cell: usize, area_m2: f64) -> Estimate {
         self.estimate(&self.cells[receiver], cell, self.photon_lm / area_m2, standard_error_of_cell)
+    }
+
+    /// The darkest and the brightest cell of a receiver with these cell areas, in photons a square metre, and their
+    /// uniformities.
+    ///
+    /// # Errors
+    /// Why they are not known.
+    pub(crate) fn extremes(&self, receiver: usize, areas_m2: &[f64]) -> Result<Extremes, Unknown> {
+        let (sum, square) = (self.totals.sum[receiver], self.totals.square[receiver]);
+        let error_of_sum = standard_error_of_total(sum, square, self.replicates);
+        Map { cells: &self.cells[receiver], areas_m2, error_of_sum, replicates: self.replicates }.extremes()
     }
 
     /// Flux that arrived at a receiver, lm.

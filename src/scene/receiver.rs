@@ -227,6 +227,11 @@ impl Receiver {
         self.areas_m2[if self.areas_m2.len() == 1 { 0 } else { cell }]
     }
 
+    /// Area of each cell in m2: one number for all, or one a face.
+    pub fn areas_m2(&self) -> &[f64] {
+        &self.areas_m2
+    }
+
     /// Area of all cells, m2.
     pub fn total_area_m2(&self) -> f64 {
         match self.cells {
