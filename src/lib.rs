@@ -126,7 +126,7 @@ pub use report::json::Report;
 pub use report::maps::{write_csv as write_map_csv, write_exr as write_map_exr};
 pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
-pub use report::statistics::ReceiverStatistics;
+pub use report::statistics::{GridStatistics, ReceiverStatistics};
 pub use report::text::summary;
 pub use report::vtp::write_vtp as write_map_vtp;
 // Studies:

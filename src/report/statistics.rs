@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::estimate::extremes::{Interval, Unknown};
 use crate::run::Outcome;
+use crate::scene::evaluation::Grid;
 use crate::scene::receiver::{Cells, Receiver};
 
 use super::numbers::{grouped, rounded};
@@ -43,12 +44,62 @@ pub struct ReceiverStatistics {
     /// Why these four are not given, and what would do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// The evaluation grid, where the receiver has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<GridStatistics>,
     /// Area of all cells, m2.
     pub area_m2: f64,
     /// Number of cells.
     pub cells: usize,
     /// sqrt(area-weighted mean of the squared standard errors of the cells) / mean illuminance: what nRMS to expect against the truth.
     pub expected_nrms: Option<f64>,
+}
+
+/// Numbers of an evaluation grid.
+#[derive(Debug, Clone, Serialize)]
+pub struct GridStatistics {
+    /// Cells along u.
+    pub nu: u32,
+    /// Cells along v.
+    pub nv: u32,
+    /// Width left out on each side, m.
+    pub border_m: f64,
+    /// Mean illuminance of its cells, lx.
+    pub mean_lx: f64,
+    /// Its standard error, lx.
+    pub mean_standard_error_lx: Option<f64>,
+    /// U0 of the means over its cells.
+    pub u0: Option<Interval>,
+    /// Ud of them.
+    pub ud: Option<Interval>,
+    /// The least of them, lx.
+    pub minimum: Option<Interval>,
+    /// The greatest, lx.
+    pub maximum: Option<Interval>,
+    /// Why these four are not given, and what would do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl GridStatistics {
+    fn new(outcome: &Outcome, index: usize, grid: &Grid) -> Self {
+        let (nu, nv, unit) = (grid.nu, grid.nv, outcome.photon_lm);
+        let (mean, extremes) = outcome.grid(index, grid.area_m2);
+        let reason = extremes.err().map(|why| why_unknown(why, Cells::Grid { nu, nv }, outcome));
+        let extremes = extremes.ok();
+        Self {
+            nu,
+            nv,
+            border_m: grid.border_m,
+            mean_lx: mean.value * unit,
+            mean_standard_error_lx: mean.standard_error.map(|error| error * unit),
+            u0: extremes.map(|e| e.u0),
+            ud: extremes.map(|e| e.ud),
+            minimum: extremes.map(|e| e.minimum.times(unit)),
+            maximum: extremes.map(|e| e.maximum.times(unit)),
+            reason,
+        }
+    }
 }
 
 impl ReceiverStatistics {
@@ -95,6 +146,7 @@ impl ReceiverStatistics {
             minimum: in_lx(extremes.map(|e| e.minimum)),
             maximum: in_lx(extremes.map(|e| e.maximum)),
             reason,
+            grid: receiver.grid.map(|grid| GridStatistics::new(outcome, index, &grid)),
             area_m2,
             cells,
             expected_nrms: (lit && outcome.replicates > 1).then(|| (variance / area_m2).sqrt() / mean_lx),
@@ -168,6 +220,7 @@ mod tests {
                 minimum: None,
                 maximum: None,
                 reason: None,
+                grid: None,
                 area_m2: 1.0,
                 cells: 1,
                 expected_nrms: None,
