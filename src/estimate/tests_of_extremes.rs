@@ -76,9 +76,6 @@ fn intervals_cover_the_truth_of_six_maps() {
             }
             widest = widest.max(found.u0.high - found.u0.low);
         }
-        println!(
-            "{name}: {given} given, of U0, Ud, minimum, maximum {covered:?} covered, U0 {widest:.3} wide"
-        );
         assert_eq!(given > 0, is_known, "{name}: {given} given");
         assert!(!is_known || given > 950, "{name}: {given} given");
         assert!(
