@@ -114,6 +114,7 @@ pub use surface::{Material, Reflectance};
 pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace, warnings};
 pub use sequence::Sequence;
 // Results:
+pub use estimate::extremes::Interval;
 pub use run::{Estimate, Outcome};
 pub use transport::{Census, Ledger};
 // Results as text and files; `write_map_...` write a receiver's map, `write_picture_...` a camera's picture:
@@ -125,7 +126,7 @@ pub use report::json::Report;
 pub use report::maps::{write_csv as write_map_csv, write_exr as write_map_exr};
 pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
-pub use report::statistics::ReceiverStatistics;
+pub use report::statistics::{GridStatistics, ReceiverStatistics};
 pub use report::text::summary;
 pub use report::vtp::write_vtp as write_map_vtp;
 // Studies:

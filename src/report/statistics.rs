@@ -2,8 +2,12 @@
 
 use serde::Serialize;
 
+use crate::estimate::extremes::{Interval, Unknown};
 use crate::run::Outcome;
-use crate::scene::receiver::Receiver;
+use crate::scene::evaluation::Grid;
+use crate::scene::receiver::{Cells, Receiver};
+
+use super::numbers::{grouped, rounded};
 
 /// A receiver's map in lux, and the numbers that sum it up. Names are those of report.json: they are only added to.
 #[derive(Debug, Clone, Serialize)]
@@ -21,20 +25,81 @@ pub struct ReceiverStatistics {
     pub flux_lm: f64,
     /// Its standard error, lm; `None` for one replicate.
     pub flux_standard_error_lm: Option<f64>,
-    /// Least illuminance of a cell, lx.
+    /// Least illuminance of a cell, lx, noise included.
     pub min_lx: f64,
     /// Flux over area, lx.
     pub mean_lx: f64,
-    /// Greatest illuminance of a cell, lx.
+    /// Greatest illuminance of a cell, lx, noise included.
     pub max_lx: f64,
-    /// U0 = min / mean; `None` where nothing arrived.
+    /// `min_lx / mean_lx`, noise included; `None` where nothing arrived.
     pub uniformity_u0: Option<f64>,
+    /// U0 = minimum / mean, with its error; `None` where cells are too noisy for it.
+    pub u0: Option<Interval>,
+    /// Ud = minimum / maximum, with its error.
+    pub ud: Option<Interval>,
+    /// Illuminance of the darkest cell, lx, with its error.
+    pub minimum: Option<Interval>,
+    /// Illuminance of the brightest cell, lx, with its error.
+    pub maximum: Option<Interval>,
+    /// Why these four are not given, and what would do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// The evaluation grid, where the receiver has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<GridStatistics>,
     /// Area of all cells, m2.
     pub area_m2: f64,
     /// Number of cells.
     pub cells: usize,
     /// sqrt(area-weighted mean of the squared standard errors of the cells) / mean illuminance: what nRMS to expect against the truth.
     pub expected_nrms: Option<f64>,
+}
+
+/// Numbers of an evaluation grid.
+#[derive(Debug, Clone, Serialize)]
+pub struct GridStatistics {
+    /// Cells along u.
+    pub nu: u32,
+    /// Cells along v.
+    pub nv: u32,
+    /// Width left out on each side, m.
+    pub border_m: f64,
+    /// Mean illuminance of its cells, lx.
+    pub mean_lx: f64,
+    /// Its standard error, lx.
+    pub mean_standard_error_lx: Option<f64>,
+    /// U0 of the means over its cells.
+    pub u0: Option<Interval>,
+    /// Ud of them.
+    pub ud: Option<Interval>,
+    /// The least of them, lx.
+    pub minimum: Option<Interval>,
+    /// The greatest, lx.
+    pub maximum: Option<Interval>,
+    /// Why these four are not given, and what would do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl GridStatistics {
+    fn new(outcome: &Outcome, index: usize, grid: &Grid) -> Self {
+        let (nu, nv, unit) = (grid.nu, grid.nv, outcome.photon_lm);
+        let (mean, extremes) = outcome.grid(index, grid.area_m2);
+        let reason = extremes.err().map(|why| why_unknown(why, Cells::Grid { nu, nv }, outcome));
+        let extremes = extremes.ok();
+        Self {
+            nu,
+            nv,
+            border_m: grid.border_m,
+            mean_lx: mean.value * unit,
+            mean_standard_error_lx: mean.standard_error.map(|error| error * unit),
+            u0: extremes.map(|e| e.u0),
+            ud: extremes.map(|e| e.ud),
+            minimum: extremes.map(|e| e.minimum.times(unit)),
+            maximum: extremes.map(|e| e.maximum.times(unit)),
+            reason,
+        }
+    }
 }
 
 impl ReceiverStatistics {
@@ -64,6 +129,10 @@ impl ReceiverStatistics {
         let min_lx = illuminance_lx.iter().copied().fold(f64::INFINITY, f64::min);
         let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
         let lit = mean_lx > 0.0;
+        let extremes = outcome.extremes(index, receiver.areas_m2());
+        let reason = extremes.err().map(|why| why_unknown(why, receiver.cells, outcome));
+        let extremes = extremes.ok();
+        let in_lx = |of: Option<Interval>| of.map(|interval| interval.times(outcome.photon_lm));
         Self {
             hits: outcome.cells()[index].sum.clone(),
             flux_lm: flux.value,
@@ -72,12 +141,49 @@ impl ReceiverStatistics {
             mean_lx,
             max_lx,
             uniformity_u0: lit.then(|| min_lx / mean_lx),
+            u0: extremes.map(|e| e.u0),
+            ud: extremes.map(|e| e.ud),
+            minimum: in_lx(extremes.map(|e| e.minimum)),
+            maximum: in_lx(extremes.map(|e| e.maximum)),
+            reason,
+            grid: receiver.grid.map(|grid| GridStatistics::new(outcome, index, &grid)),
             area_m2,
             cells,
             expected_nrms: (lit && outcome.replicates > 1).then(|| (variance / area_m2).sqrt() / mean_lx),
             illuminance_lx,
             standard_error_lx,
         }
+    }
+}
+
+/// Why extremes and uniformity of these cells are not given, and what would do.
+fn why_unknown(why: Unknown, cells: Cells, outcome: &Outcome) -> String {
+    match why {
+        Unknown::OneReplicate => why_no_error(outcome).unwrap_or("one replicate has no spread").to_owned(),
+        Unknown::Dark => "no light arrives".to_owned(),
+        Unknown::OneCell => "one cell".to_owned(),
+        Unknown::Noisy { photons, error, bound, cells: fewer, more } => {
+            let grid =
+                fewer.and_then(|fewer| coarser(cells, fewer)).map_or(String::new(), |grid| grid + ", or ");
+            let [photons, error, bound] = [photons, 100.0 * error, 100.0 * bound].map(|x| rounded(x, 2));
+            let more = grouped(more.ceil() as u64);
+            format!(
+                "cells are too noisy: {photons} photons in a cell, an error of {error} % of the mean where {bound} % \
+                 is allowed; {grid}{more} times the photons would do"
+            )
+        }
+    }
+}
+
+/// A division into at most so many cells of the same shape, in words.
+fn coarser(cells: Cells, most: u64) -> Option<String> {
+    match cells {
+        Cells::Grid { nu, nv } => {
+            let scale = (most as f64 / (f64::from(nu) * f64::from(nv))).sqrt();
+            let [nu, nv] = [nu, nv].map(|n| ((f64::from(n) * scale) as u64).max(1));
+            (nu * nv > 1).then(|| format!("[{nu}, {nv}] cells"))
+        }
+        Cells::Faces { .. } => Some(format!("{} faces of equal area", grouped(most))),
     }
 }
 
@@ -109,6 +215,12 @@ mod tests {
                 mean_lx: 0.0,
                 max_lx: 0.0,
                 uniformity_u0: None,
+                u0: None,
+                ud: None,
+                minimum: None,
+                maximum: None,
+                reason: None,
+                grid: None,
                 area_m2: 1.0,
                 cells: 1,
                 expected_nrms: None,

@@ -1,12 +1,13 @@
 //! The printed summary of a run, for a lighting engineer.
 
-use std::fmt::{Result, Write};
+use std::fmt::{Error, Result, Write};
 
+use crate::estimate::extremes::Interval;
 use crate::run::{Estimate, Outcome, StoppedBy};
 use crate::scene::Scene;
 
 use super::numbers::{digits, grouped, rounded, with_error, written};
-use super::statistics::{ReceiverStatistics, why_no_error};
+use super::statistics::{GridStatistics, ReceiverStatistics, why_no_error};
 
 /// The summary: what was run, every receiver, where the flux went, how good it is and how long it took.
 pub fn summary(
@@ -71,17 +72,47 @@ fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &
     writeln!(out, "  flux         {}", with_error(s.flux_lm, s.flux_standard_error_lm, "lm"))?;
     let mean_error = s.flux_standard_error_lm.map(|e| e / s.area_m2);
     writeln!(out, "  illuminance  mean {}", with_error(s.mean_lx, mean_error, "lx"))?;
-    writeln!(out, "               min {} lx, max {} lx", digits(s.min_lx), digits(s.max_lx))?;
-    match s.uniformity_u0 {
-        Some(u0) => writeln!(out, "  uniformity   U0 = min/mean = {u0:.3}")?,
-        None => writeln!(out, "  uniformity   none: no light arrives")?,
-    }
+    write_extremes(out, s)?;
     if let Some(nrms) = s.expected_nrms {
         let nrms = rounded(100.0 * nrms, 3);
         writeln!(out, "  error        a cell is off by {nrms} % of the mean (root mean square)")?;
     }
     if !files.is_empty() {
         writeln!(out, "  files        {}", files.join(", "))?;
+    }
+    Ok(())
+}
+
+/// Extremes as intervals; whether there are any.
+fn write_intervals(out: &mut String, intervals: [Option<Interval>; 4]) -> std::result::Result<bool, Error> {
+    if let [Some(minimum), Some(maximum), Some(u0), Some(ud)] = intervals {
+        let lx = |i: Interval| format!("{} lx ({} to {})", digits(i.value), digits(i.low), digits(i.high));
+        let share = |i: Interval| format!("{:.3} ({:.3} to {:.3})", i.value, i.low, i.high);
+        writeln!(out, "               min {}, max {}", lx(minimum), lx(maximum))?;
+        writeln!(out, "  uniformity   U0 = min/mean = {}, Ud = min/max = {}; 95 %", share(u0), share(ud))?;
+    }
+    Ok(intervals.iter().all(Option::is_some))
+}
+
+/// Extremes, or why there are none: those of noisy cells are noise.
+fn write_extremes(out: &mut String, s: &ReceiverStatistics) -> Result {
+    if !write_intervals(out, [s.minimum, s.maximum, s.u0, s.ud])? {
+        let [least, most] = [s.min_lx, s.max_lx].map(digits);
+        writeln!(out, "               cells from {least} to {most} lx, noise included")?;
+        writeln!(out, "  uniformity   not known: {}", s.reason.as_deref().unwrap_or("no light arrives"))?;
+    }
+    if let Some(grid) = &s.grid {
+        let mean = with_error(grid.mean_lx, grid.mean_standard_error_lx, "lx");
+        let GridStatistics { nu, nv, border_m, .. } = grid;
+        let border = if *border_m > 0.0 { format!(" without {border_m} m of border") } else { String::new() };
+        writeln!(out, "  grid         {nu} x {nv} cells{border}, values are their means: mean {mean}")?;
+        if !write_intervals(out, [grid.minimum, grid.maximum, grid.u0, grid.ud])? {
+            writeln!(
+                out,
+                "  uniformity   not known: {}",
+                grid.reason.as_deref().unwrap_or("no light arrives")
+            )?;
+        }
     }
     Ok(())
 }

@@ -2,9 +2,11 @@
 
 use std::time::Instant;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::{Diagnostic, Kind};
+use crate::estimate::extremes::{Extremes, Map, Unknown};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
+use crate::tally::counts::Counts;
 use crate::tally::{Moments, Receivers};
 use crate::transport::parallel::Traced;
 use crate::transport::{Census, Ledger};
@@ -41,6 +43,10 @@ pub struct Outcome {
     cells: Vec<Moments>,
     /// Of each receiver's total: one entry a receiver.
     totals: Moments,
+    /// Of every cell of an evaluation grid, by receiver; empty where it has none.
+    grids: Vec<Moments>,
+    /// Of each evaluation grid's total.
+    grid_totals: Moments,
     /// Arrivals on the side of each receiver on which it does not count.
     pub turned_away: Vec<u64>,
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
@@ -75,6 +81,8 @@ impl Outcome {
             accounts: Moments::new(surfaces + 3),
             cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
             totals: Moments::new(scene.receivers.len()),
+            grids: scene.receivers.iter().map(|r| Moments::new(r.grid.map_or(0, |g| g.cells()))).collect(),
+            grid_totals: Moments::new(scene.receivers.len()),
             turned_away: vec![0; scene.receivers.len()],
             other_events: vec![0; scene.receivers.len()],
             census: Census::default(),
@@ -88,6 +96,9 @@ impl Outcome {
         self.add_accounts(traced, receivers);
         for (receiver, moments) in self.cells.iter_mut().enumerate() {
             moments.absorb(receivers.counts(receiver).iter());
+        }
+        for (receiver, moments) in self.grids.iter_mut().enumerate() {
+            moments.absorb(receivers.grid(receiver).into_iter().flat_map(Counts::iter));
         }
     }
 
@@ -107,6 +118,7 @@ impl Outcome {
             sums.iter_mut().zip(counts.iter()).for_each(|(sum, count)| *sum += count);
         }
         self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).total()));
+        self.grid_totals.absorb((0..self.cells.len()).map(|r| receivers.grid(r).map_or(0, Counts::total)));
     }
 
     /// Takes replicates that have come equally far, each with its receivers, in the place of what there was.
@@ -122,13 +134,23 @@ impl Outcome {
             let counts: Vec<_> = replicas.clone().map(|(_, receivers)| receivers.counts(receiver)).collect();
             moments.replace(&counts);
         }
+        for (receiver, moments) in self.grids.iter_mut().enumerate() {
+            let counts: Vec<_> =
+                replicas.clone().filter_map(|(_, receivers)| receivers.grid(receiver)).collect();
+            moments.replace(&counts);
+        }
     }
 
     /// The run is over: what it found, or that it found nothing.
     ///
     /// # Errors
     /// An interrupt before there was a result, for which it takes `fewest` photons.
-    pub(super) fn finished(mut self, scene: &Scene, started: Instant, fewest: u64) -> Result<Self> {
+    pub(super) fn finished(
+        mut self,
+        scene: &Scene,
+        started: Instant,
+        fewest: u64,
+    ) -> crate::error::Result<Self> {
         if self.photons == 0 {
             return Err(Diagnostic::new(
                 Kind::Interrupted,
@@ -144,7 +166,7 @@ impl Outcome {
     /// Nothing again.
     pub(super) fn clear(&mut self) {
         self.clear_accounts();
-        self.cells.iter_mut().for_each(Moments::clear);
+        self.cells.iter_mut().chain(&mut self.grids).for_each(Moments::clear);
     }
 
     fn clear_accounts(&mut self) {
@@ -152,7 +174,7 @@ impl Outcome {
         self.turned_away.fill(0);
         self.other_events.fill(0);
         self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
-        [&mut self.accounts, &mut self.totals].into_iter().for_each(Moments::clear);
+        [&mut self.accounts, &mut self.totals, &mut self.grid_totals].into_iter().for_each(Moments::clear);
     }
 
     /// Photons counted in the cells of each receiver, row by row from the top left, or face by face.
@@ -173,6 +195,31 @@ impl Outcome {
     /// Illuminance in a cell of a receiver with this cell area, lx.
     pub fn illuminance_lx(&self, receiver: usize, cell: usize, area_m2: f64) -> Estimate {
         self.estimate(&self.cells[receiver], cell, self.photon_lm / area_m2, standard_error_of_cell)
+    }
+
+    /// The darkest and the brightest cell of a receiver with these cell areas, in photons a square metre, and their
+    /// uniformities.
+    ///
+    /// # Errors
+    /// Why they are not known.
+    pub(crate) fn extremes(&self, receiver: usize, areas_m2: &[f64]) -> Result<Extremes, Unknown> {
+        let (sum, square) = (self.totals.sum[receiver], self.totals.square[receiver]);
+        let error_of_sum = standard_error_of_total(sum, square, self.replicates);
+        Map { cells: &self.cells[receiver], areas_m2, error_of_sum, replicates: self.replicates }.extremes()
+    }
+
+    /// The mean of a receiver's evaluation grid in photons a square metre, and the extremes of its cells of this area.
+    pub(crate) fn grid(&self, receiver: usize, area_m2: f64) -> (Estimate, Result<Extremes, Unknown>) {
+        let (cells, total) = (&self.grids[receiver], &self.grid_totals);
+        let unit = 1.0 / (area_m2 * cells.sum.len() as f64);
+        let mean = self.estimate(total, receiver, unit, standard_error_of_total);
+        let error_of_sum = mean.standard_error.map(|error| error / unit);
+        (mean, Map { cells, areas_m2: &[area_m2], error_of_sum, replicates: self.replicates }.extremes())
+    }
+
+    /// Photons in the cells of a receiver's evaluation grid.
+    pub fn grid_cells(&self, receiver: usize) -> &Moments {
+        &self.grids[receiver]
     }
 
     /// Flux that arrived at a receiver, lm.

@@ -16,6 +16,7 @@ pub mod inside;
 pub mod media;
 mod near_field;
 mod options;
+pub mod evaluation;
 pub mod receiver;
 pub mod requires;
 pub mod sheets;

@@ -2,7 +2,9 @@
 
 use crate::error::invalid::Invalid;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::geometry::{Geometry, Shape, SurfaceId};
+use crate::geometry::{Geometry, LENGTH, Shape, SurfaceId};
+
+use super::evaluation::{GRID_REQUIRED, Grid, GridKind, MOST_GRID_CELLS};
 
 /// The side of its surface on which a receiver counts arriving flux.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -48,6 +50,8 @@ pub struct ReceiverSpec {
     cells: Option<[u32; 2]>,
     side: ReceiverSide,
     events: ReceiverEvents,
+    grid: Option<GridKind>,
+    border_m: f64,
 }
 
 impl ReceiverSpec {
@@ -69,7 +73,7 @@ impl ReceiverSpec {
             });
         }
         let (side, events) = (ReceiverSide::default(), ReceiverEvents::default());
-        Ok(Self { name, surface: surface.into(), cells: None, side, events })
+        Ok(Self { name, surface: surface.into(), cells: None, side, events, grid: None, border_m: 0.0 })
     }
 
     /// The same with so many cells along u and v, `DEFAULT_CELLS` without; not on a mesh, which has one value a face.
@@ -95,6 +99,23 @@ impl ReceiverSpec {
     #[must_use]
     pub fn of_events(self, events: ReceiverEvents) -> Self {
         Self { events, ..self }
+    }
+
+    /// The same with an evaluation grid beside the map: of so many cells along u and v, or, without, as EN 12464-1 divides a
+    /// rectangle. A border of this width is left out on each side.
+    ///
+    /// # Errors
+    /// No cells, or too many; a border that is no length.
+    pub fn with_grid(mut self, counts: Option<[u32; 2]>, border_m: f64) -> Result<Self, Invalid> {
+        if let Some(counts) = counts {
+            let number = counts.into_iter().map(u64::from).product();
+            if !(1..=MOST_GRID_CELLS).contains(&number) {
+                return Err(Invalid::Count { what: "grid", value: number, required: GRID_REQUIRED });
+            }
+        }
+        self.border_m = if border_m == 0.0 { 0.0 } else { LENGTH.check("border_m", border_m)? };
+        self.grid = Some(counts.map_or(GridKind::En12464, GridKind::Counts));
+        Ok(self)
     }
 
     /// Name of the output.
@@ -163,6 +184,8 @@ pub struct Receiver {
     areas_m2: Vec<f64>,
     /// Width and height in metres of a flat rectangle.
     pub size_m: Option<[f64; 2]>,
+    /// The evaluation grid beside the map.
+    pub grid: Option<Grid>,
 }
 
 /// Cells of receivers without a number of their own.
@@ -217,14 +240,28 @@ impl Receiver {
             Shape::Rectangle(r) => Some([r.edge_u().length(), r.edge_v().length()]),
             _ => None,
         };
+        let grid = match (spec.grid, size_m) {
+            (None, _) => None,
+            (Some(kind), Some(size_m)) => Some(Grid::new(kind, size_m, spec.border_m)?),
+            (Some(_), None) => {
+                let found =
+                    format!("an evaluation grid for receiver \"{}\", which is no rectangle", spec.name);
+                return Err(Diagnostic::new(Kind::Range, found, "a grid on a rectangle alone"));
+            }
+        };
         let (name, side, events) = (spec.name.clone(), spec.side, spec.events);
-        Ok(Self { name, surface, cells, side, events, areas_m2, size_m })
+        Ok(Self { name, surface, cells, side, events, areas_m2, size_m, grid })
     }
 
     /// Area of a cell, m2.
     #[inline]
     pub fn area_m2(&self, cell: usize) -> f64 {
         self.areas_m2[if self.areas_m2.len() == 1 { 0 } else { cell }]
+    }
+
+    /// Area of each cell in m2: one number for all, or one a face.
+    pub fn areas_m2(&self) -> &[f64] {
+        &self.areas_m2
     }
 
     /// Area of all cells, m2.

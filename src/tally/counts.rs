@@ -42,47 +42,65 @@ impl Counts {
 }
 
 /// Sum and sum of squares of a count over replicates, cell by cell: all that a standard error needs, whatever
-/// the number of replicates.
+/// the number of replicates; and the sum over half of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Moments {
     /// Sum of the counts.
     pub sum: Vec<u64>,
     /// Sum of their squares; 128 bits, so that no number of photons below 2^64 overflows it.
     pub square: Vec<u128>,
+    /// Sum of the counts of the first, third, fifth ... replicate: what the others choose is valued by these.
+    pub odd: Vec<u64>,
+    /// Replicates taken in.
+    replicates: u32,
 }
 
 impl Moments {
     /// Zeros.
     pub fn new(cells: usize) -> Self {
-        Self { sum: vec![0; cells], square: vec![0; cells] }
+        Self { sum: vec![0; cells], square: vec![0; cells], odd: vec![0; cells], replicates: 0 }
     }
 
     /// Takes in the counts of a finished replicate.
     pub fn absorb(&mut self, counts: impl Iterator<Item = u64>) {
-        for ((sum, square), count) in self.sum.iter_mut().zip(&mut self.square).zip(counts) {
+        let is_odd = self.replicates.is_multiple_of(2);
+        let sums = self.sum.iter_mut().zip(&mut self.square).zip(&mut self.odd);
+        for (((sum, square), odd), count) in sums.zip(counts) {
             *sum += count;
             *square += u128::from(count) * u128::from(count);
+            if is_odd {
+                *odd += count;
+            }
         }
+        self.replicates += 1;
     }
 
     /// Takes the counts of these replicates in the place of what there was.
     pub fn replace(&mut self, replicates: &[&Counts]) {
         let sums = self.sum.par_chunks_mut(CHUNK).zip(self.square.par_chunks_mut(CHUNK));
-        sums.enumerate().for_each(|(chunk, (sums, squares))| {
+        sums.zip(self.odd.par_chunks_mut(CHUNK)).enumerate().for_each(|(chunk, ((sums, squares), odds))| {
             let first = chunk * CHUNK;
-            for (i, (sum, square)) in sums.iter_mut().zip(squares).enumerate() {
-                let counts = replicates.iter().map(|counts| counts.0[first + i].load(Ordering::Relaxed));
-                (*sum, *square) = counts.fold((0, 0), |(sum, square), count| {
-                    (sum + count, square + u128::from(count) * u128::from(count))
-                });
+            for (i, ((sum, square), odd)) in sums.iter_mut().zip(squares).zip(odds).enumerate() {
+                (*sum, *square, *odd) = (0, 0, 0);
+                for (replicate, counts) in replicates.iter().enumerate() {
+                    let count = counts.0[first + i].load(Ordering::Relaxed);
+                    *sum += count;
+                    *square += u128::from(count) * u128::from(count);
+                    if replicate % 2 == 0 {
+                        *odd += count;
+                    }
+                }
             }
         });
+        self.replicates = replicates.len() as u32;
     }
 
     /// Zeros again.
     pub fn clear(&mut self) {
         self.sum.fill(0);
         self.square.fill(0);
+        self.odd.fill(0);
+        self.replicates = 0;
     }
 }
 
@@ -98,6 +116,7 @@ mod tests {
         moments.absorb([1u64 << 60, 0, 7].into_iter());
         assert_eq!(moments.sum, [3 << 60, 8, 7]);
         assert_eq!(moments.square, [3 << 120, 34, 49]);
+        assert_eq!(moments.odd, [2 << 60, 3, 7]);
         moments.clear();
         assert_eq!(moments, Moments::new(3));
     }

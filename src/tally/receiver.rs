@@ -24,6 +24,8 @@ pub(super) struct Routes<'s> {
 pub struct Receivers<'s> {
     routes: Routes<'s>,
     counts: Vec<Counts>,
+    /// Of the receivers that have an evaluation grid, its cells.
+    grids: Vec<Option<Counts>>,
     /// Arrivals on the side of each receiver on which it does not count.
     turned_away: Counts,
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
@@ -76,6 +78,12 @@ impl<'s> Routes<'s> {
         }
     }
 
+    /// The cell of a receiver's evaluation grid.
+    fn grid_cell(&self, receiver: usize, hit: &Hit) -> Option<usize> {
+        let shape = &self.geometry.surfaces()[hit.surface.0 as usize].shape;
+        self.receivers[receiver].grid?.cell(shape.uv(hit.position)?)
+    }
+
     fn cell(&self, receiver: &Receiver, hit: &Hit) -> Option<usize> {
         match receiver.cells {
             Cells::Faces { count } => ((hit.face as usize) < count).then_some(hit.face as usize),
@@ -94,8 +102,9 @@ impl<'s> Receivers<'s> {
     /// Counters at zero for these receivers.
     pub fn new(geometry: &'s Geometry, receivers: &'s [Receiver]) -> Self {
         let counts = receivers.iter().map(|r| Counts::new(r.cells.len())).collect();
+        let grids = receivers.iter().map(|r| r.grid.map(|grid| Counts::new(grid.cells()))).collect();
         let [turned_away, other_events] = [0; 2].map(|_| Counts::new(receivers.len()));
-        Self { routes: Routes::new(geometry, receivers), counts, turned_away, other_events }
+        Self { routes: Routes::new(geometry, receivers), counts, grids, turned_away, other_events }
     }
 
     /// A handle for one batch of photons; all handles add to the same counters.
@@ -113,6 +122,11 @@ impl<'s> Receivers<'s> {
         &self.counts[receiver]
     }
 
+    /// Counts of a receiver's evaluation grid, row by row from the top left.
+    pub fn grid(&self, receiver: usize) -> Option<&Counts> {
+        self.grids[receiver].as_ref()
+    }
+
     /// Arrivals on the side of each receiver on which it does not count.
     pub fn turned_away(&self) -> &Counts {
         &self.turned_away
@@ -127,7 +141,7 @@ impl<'s> Receivers<'s> {
     pub fn clear(&mut self) {
         self.turned_away.clear();
         self.other_events.clear();
-        self.counts.iter_mut().for_each(Counts::clear);
+        self.counts.iter_mut().chain(self.grids.iter_mut().flatten()).for_each(Counts::clear);
     }
 }
 
@@ -144,7 +158,14 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
         let all = self.receivers;
         all.routes.each_cell(
             arrival,
-            |receiver, cell| all.counts[receiver].add(cell, 1),
+            |receiver, cell| {
+                all.counts[receiver].add(cell, 1);
+                if let Some(grid) = &all.grids[receiver]
+                    && let Some(cell) = all.routes.grid_cell(receiver, arrival.hit)
+                {
+                    grid.add(cell, 1);
+                }
+            },
             |receiver, why| match why {
                 Refused::Side => all.turned_away.add(receiver, 1),
                 Refused::Events => all.other_events.add(receiver, 1),

@@ -11,6 +11,7 @@ mod direct;
 mod disc;
 mod discontinuous;
 mod emitter_colour;
+mod grid;
 mod interrupted;
 mod lengths;
 mod media;

@@ -192,8 +192,12 @@ fn a_report_has_the_keys_of_the_contract_and_balances() {
             "uniformity_u0",
             "area_m2",
             "cells",
+            "u0",
+            "ud",
+            "minimum",
+            "maximum",
         ],
-        &["expected_nrms", "files"],
+        &["expected_nrms", "files", "reason"],
     );
     let sum = |v: &Value| v.as_object().unwrap().values().map(|x| x.as_f64().unwrap()).sum::<f64>();
     let lm = |key: &str| ledger[key].as_f64().unwrap();

@@ -4,6 +4,8 @@ use super::names::Names;
 use super::part::SurfacePart;
 use super::table::{Placed, Table};
 use crate::error::{Kind, Place};
+use crate::geometry::LENGTH;
+use crate::scene::evaluation::{GRID_REQUIRED, MOST_GRID_CELLS};
 use crate::scene::receiver::{CELLS_REQUIRED, MOST_CELLS, ReceiverEvents, ReceiverSide, ReceiverSpec};
 
 const SIDES: [(&str, ReceiverSide); 3] =
@@ -43,14 +45,38 @@ pub(super) fn read(
     }
     let side = table.word("side", &SIDES).unwrap_or_default();
     let events = table.word("events", &EVENTS).unwrap_or_default();
+    let grid = grid(&mut table);
     let spec = name.and_then(|name| {
         let (surface, _) = surface.unwrap_or_default();
         let spec = table.accept(ReceiverSpec::new(name.value, surface))?.on_side(side).of_events(events);
-        match cells {
-            Some(cells) => table.accept(spec.with_cells(cells)),
+        let spec = match cells {
+            Some(cells) => table.accept(spec.with_cells(cells))?,
+            None => spec,
+        };
+        match grid {
+            Some((counts, border_m)) => table.accept(spec.with_grid(counts, border_m)),
             None => Some(spec),
         }
     });
     table.finish();
     spec
+}
+
+/// Counts of an evaluation grid, none for the standard's, and the border.
+fn grid(table: &mut Table<'_, '_>) -> Option<(Option<[u32; 2]>, f64)> {
+    let is_given = table.place_of("grid").is_some();
+    if !is_given && table.place_of("border_m").is_some() {
+        table.error("border_m", Kind::Missing, "`grid`, whose border this is, too");
+    }
+    let border_m = table.number("border_m", &LENGTH).unwrap_or(0.0);
+    let counts = if table.is_list("grid") {
+        Some(table.cells("grid", MOST_GRID_CELLS, GRID_REQUIRED)?)
+    } else if table.word_of("grid").is_some() {
+        table.word("grid", &[("EN 12464", ())])?;
+        None
+    } else {
+        table.cells("grid", MOST_GRID_CELLS, GRID_REQUIRED)?;
+        None
+    };
+    Some((counts, border_m))
 }

@@ -60,7 +60,7 @@ pub struct FalseColour<'a> {
 pub enum Quantity {
     /// Illuminance on a surface, lx.
     Illuminance,
-    /// Luminance of a picture, cd/m2: it has no (u, v) axes, and uniformity means nothing.
+    /// Luminance of a picture, cd/m2: it has no (u, v) axes.
     Luminance,
 }
 
@@ -220,7 +220,7 @@ fn fit_map(values: &[f64], cells: [usize; 2]) -> Axis {
     Axis::fit_with_typical(values, &area_average(values, cells, coarse))
 }
 
-/// Minimum, mean, maximum and uniformity of the cells that have a value.
+/// Minimum, mean and maximum of the cells that have a value. No uniformity: of noisy cells it is noise.
 fn statistics_line(values: &[f64], quantity: Quantity) -> String {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let count = finite().count();
@@ -230,14 +230,9 @@ fn statistics_line(values: &[f64], quantity: Quantity) -> String {
     let min = finite().fold(f64::INFINITY, f64::min);
     let max = finite().fold(f64::NEG_INFINITY, f64::max);
     let mean = finite().map(|v| v / count as f64).sum::<f64>();
-    let uniformity = if mean > 0.0 { three_digits(min / mean) } else { "-".to_owned() };
     let [min, mean, max] = [min, mean, max].map(three_digits);
     let unit = quantity.unit();
-    let line = format!("min {min} {unit}    mean {mean} {unit}    max {max} {unit}");
-    match quantity {
-        Quantity::Illuminance => format!("{line}    uniformity U0 = min/mean = {uniformity}"),
-        Quantity::Luminance => line,
-    }
+    format!("min {min} {unit}    mean {mean} {unit}    max {max} {unit}")
 }
 
 /// Pixels on which a map of so many cells is shown; cells become squares, or follow `size_m`.
