@@ -70,7 +70,7 @@ grid = [8, 3]
 border_m = 0.16
 "#,
     ));
-    let numbers = numbers(&scene, 1 << 17);
+    let numbers = numbers(&scene, 1 << 19);
     for (of, counts, border) in [(&numbers[0], [10, 5], 0.0), (&numbers[1], [8, 3], 0.16)] {
         let [least, mean, most] = truth(counts, border);
         let grid = of.grid.as_ref().unwrap();
@@ -118,7 +118,7 @@ fn grids_that_cannot_be_are_refused_where_they_stand() {
         let text = errors.iter().map(|e| format!("{e} {}\n", e.required())).collect::<String>();
         assert!(text.contains(words) && text.contains("test.toml:"), "{keys}: {text}");
     }
-    let ball = "[[surface]]\nname = \"ball\"\ntype = \"sphere\"\nmaterial = \"black\"\ncentre = [3, 0, 0]\n\
+    let ball = "[[surface]]\nname = \"ball\"\ntype = \"sphere\"\nmaterial = \"black\"\ncenter = [3, 0, 0]\n\
                 radius = 0.5\n[[receiver]]\nsurface = \"ball\"\ngrid = [2, 2]\n";
     let errors = try_scene(&desk(ball)).unwrap_err();
     assert!(errors[0].to_string().contains("no rectangle"), "{:?}", errors);
