@@ -29,8 +29,8 @@ fn the_built_in_scene_needs_sums_and_nothing_that_grows_with_photons() {
         .map(|m| {
             let (peak, outcome) = peak_of(|| run(&scene, Sequence::SobolOwen, 1 << m, 8, 1));
             let cells: usize = outcome.cells().iter().map(|c| c.sum.len()).sum();
-            // Sum and sum of squares over replicates, and the counters of all 8, which advance together.
-            let (sums, counters) = (size_of::<u64>() + size_of::<u128>(), size_of::<[u64; 8]>());
+            // Sum, that of every other replicate and sum of squares, and the counters of all 8, which advance together.
+            let (sums, counters) = (2 * size_of::<u64>() + size_of::<u128>(), size_of::<[u64; 8]>());
             let sums = cells * (sums + counters);
             println!("{} photons: peak {peak} bytes, of them sums {sums}", outcome.photons);
             assert!(peak >= sums, "the allocator counts");
