@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::scene::Scene;
+use crate::scene::receiver::Receiver;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
@@ -86,7 +87,8 @@ pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
 
 /// Counters of all replicates.
 fn counters(scene: &Scene, plan: &Plan) -> u64 {
-    let cells: u64 = scene.receivers.iter().map(|receiver| receiver.cells.len() as u64).sum();
+    let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
+    let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
     cells.saturating_mul(u64::from(plan.replicates()))
 }
 

@@ -169,6 +169,7 @@ impl SceneBuilder {
                 Ok(receiver) => {
                     cells +=
                         if let Cells::Grid { .. } = receiver.cells { receiver.cells.len() as u64 } else { 0 };
+                    cells += receiver.grid.map_or(0, |grid| grid.cells() as u64);
                     receivers.push(receiver);
                 }
                 Err(e) => errors.push(e.placed(*place)),

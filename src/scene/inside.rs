@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use crate::error::warning::{Severity, Warning};
 use crate::geometry::{Shape, SurfaceId, Whereabouts};
-use crate::surface::Material;
 
 use super::Scene;
 use super::endless::{is_inside, is_inverted};
@@ -23,18 +22,13 @@ const RAYS: u32 = 256;
 pub(super) fn warnings(scene: &Scene) -> Vec<Warning> {
     let ids = || (0..scene.materials().len() as u32).map(SurfaceId);
     let walls: Vec<SurfaceId> =
-        ids().filter(|s| scene.geometry.is_closed(*s) && is_opaque(scene.material(*s))).collect();
+        ids().filter(|s| scene.geometry.is_closed(*s) && scene.material(*s).is_opaque()).collect();
     let mut all: Vec<Warning> = walls.iter().filter_map(|wall| lamps_in(scene, *wall)).collect();
     all.extend(walls.iter().filter_map(|wall| camera_in(scene, *wall)));
     let bodies = ids().filter(|s| matches!(scene.media.role(*s), Role::Body { .. }));
     all.extend(bodies.filter_map(|body| all_in(scene, body)));
     all.extend(nothing_seen(scene));
     all
-}
-
-/// Surely no light gets through. (A table may send some.)
-fn is_opaque(material: &Material) -> bool {
-    matches!(material, Material::Lambertian(_) | Material::Mirror(_) | Material::Absorber)
 }
 
 /// Emitters within a closed surface, by name.

@@ -4,9 +4,11 @@
 //! materials in colour has photons with weights; only one with a camera keeps photons, and only where the
 //! camera makes a map of them. Nothing that a scene can name needs wavelengths, so there are none.
 
+use std::collections::BTreeSet;
+
 use crate::emitter::Emits;
 use crate::geometry::Shape;
-use crate::surface::{Kind, Material, REQUIREMENTS};
+use crate::surface::{Kind, Material};
 
 use super::Scene;
 use super::camera::Method;
@@ -20,17 +22,14 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
     let cells = |test: fn(&Cells) -> bool| scene.receivers.iter().any(|r| test(&r.cells));
     let materials = scene.materials();
     let specular = materials.iter().any(|m| m.kind() == Kind::Specular);
-    let words: Vec<&str> = materials.iter().flat_map(Material::requires).copied().collect();
-    let mut emission: Vec<(u8, &str)> = emitters.iter().map(|e| e.kind().requires).collect();
-    emission.sort_unstable();
-    emission.dedup();
+    let of_materials = ranked(materials.iter().flat_map(Material::requires).copied());
+    let emission = ranked(emitters.iter().map(|e| e.kind().requires));
     let of_emitters_and_shapes = [
         ("choice of emitter", emitters.len() > 1),
         ("triangles", shape(|s| matches!(s, Shape::Mesh(_) | Shape::Rectangle(_)))),
         ("exact shapes", shape(|s| matches!(s, Shape::Sphere(_) | Shape::Paraboloid(_)))),
         ("smooth normals", specular && shape(|s| matches!(s, Shape::Mesh(m) if m.is_smooth()))),
     ];
-    let of_materials = REQUIREMENTS.map(|word| (word, words.contains(&word)));
     let of_the_rest = [
         ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
@@ -38,7 +37,13 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("camera", scene.camera.is_some()),
         ("stored photons", scene.camera.as_ref().is_some_and(|c| c.method == Method::Map)),
     ];
-    let others = of_emitters_and_shapes.into_iter().chain(of_materials).chain(of_the_rest);
-    let others = others.filter_map(|(word, required)| required.then_some(word));
-    emission.into_iter().map(|(_, word)| word).chain(others).collect()
+    let required =
+        |list: Vec<(&'static str, bool)>| list.into_iter().filter_map(|(word, is)| is.then_some(word));
+    let of_emitters_and_shapes = required(of_emitters_and_shapes.to_vec());
+    emission.chain(of_emitters_and_shapes).chain(of_materials).chain(required(of_the_rest.to_vec())).collect()
+}
+
+/// Words in the order of their ranks, each once.
+fn ranked(words: impl Iterator<Item = (u8, &'static str)>) -> impl Iterator<Item = &'static str> {
+    words.collect::<BTreeSet<_>>().into_iter().map(|(_, word)| word)
 }

@@ -9,10 +9,14 @@ use crate::surface::{Event, Incidence, Kind, Model, Throughput};
 pub struct Absorber;
 
 impl Model for Absorber {
-    const REQUIRES: &[&str] = &[];
+    const REQUIRES: &[(u8, &'static str)] = &[];
 
     fn kind(&self) -> Kind {
         Kind::Absorbing
+    }
+
+    fn is_opaque(&self) -> bool {
+        true
     }
 
     fn is_coloured(&self) -> bool {

@@ -99,7 +99,7 @@ impl Dielectric {
 }
 
 impl Model for Dielectric {
-    const REQUIRES: &[&str] = &["refraction"];
+    const REQUIRES: &[(u8, &'static str)] = &[(0, "refraction")];
 
     fn kind(&self) -> Kind {
         Kind::Specular
@@ -107,6 +107,10 @@ impl Model for Dielectric {
 
     fn keeps_all(&self) -> bool {
         true
+    }
+
+    fn is_opaque(&self) -> bool {
+        false
     }
 
     fn is_coloured(&self) -> bool {

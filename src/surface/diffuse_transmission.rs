@@ -51,10 +51,14 @@ impl DiffuseTransmission {
 }
 
 impl Model for DiffuseTransmission {
-    const REQUIRES: &[&str] = &["diffuse scattering", "diffuse transmission"];
+    const REQUIRES: &[(u8, &'static str)] = &[(2, "diffuse scattering"), (3, "diffuse transmission")];
 
     fn kind(&self) -> Kind {
         if luminance(self.scattered()) > 0.0 { Kind::Scattering } else { Kind::Absorbing }
+    }
+
+    fn is_opaque(&self) -> bool {
+        false
     }
 
     fn is_coloured(&self) -> bool {

@@ -32,7 +32,7 @@ impl Lambertian {
 }
 
 impl Model for Lambertian {
-    const REQUIRES: &[&str] = &["diffuse scattering"];
+    const REQUIRES: &[(u8, &'static str)] = &[(2, "diffuse scattering")];
 
     fn kind(&self) -> Kind {
         if self.reflectance.luminous() > 0.0 { Kind::Scattering } else { Kind::Absorbing }
@@ -40,6 +40,10 @@ impl Model for Lambertian {
 
     fn keeps_all(&self) -> bool {
         self.reflectance.by_channel() == [1.0; 3]
+    }
+
+    fn is_opaque(&self) -> bool {
+        true
     }
 
     fn is_coloured(&self) -> bool {

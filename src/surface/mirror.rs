@@ -27,7 +27,7 @@ impl Mirror {
 }
 
 impl Model for Mirror {
-    const REQUIRES: &[&str] = &["mirror reflection"];
+    const REQUIRES: &[(u8, &'static str)] = &[(1, "mirror reflection")];
 
     fn kind(&self) -> Kind {
         Kind::Specular
@@ -35,6 +35,10 @@ impl Model for Mirror {
 
     fn keeps_all(&self) -> bool {
         self.reflectance.by_channel() == [1.0; 3]
+    }
+
+    fn is_opaque(&self) -> bool {
+        true
     }
 
     fn is_coloured(&self) -> bool {

@@ -81,10 +81,6 @@ macro_rules! ask {
     };
 }
 
-/// All that [`Material::requires`] answers, in the order of reports.
-pub const REQUIREMENTS: [&str; 5] =
-    ["refraction", "mirror reflection", "diffuse scattering", "diffuse transmission", "tabulated scattering"];
-
 /// What became of a photon at a surface.
 #[derive(Debug, Clone, Copy)]
 pub enum Event {
@@ -143,11 +139,11 @@ pub struct Ways {
 /// such thing.
 pub trait Model {
     /// [`Material::requires`], of one that lets light go on.
-    const REQUIRES: &[&str];
+    const REQUIRES: &[(u8, &'static str)];
     /// [`Material::kind`].
     fn kind(&self) -> Kind;
     /// [`Material::requires`].
-    fn requires(&self) -> &'static [&'static str] {
+    fn requires(&self) -> &'static [(u8, &'static str)] {
         if self.kind() == Kind::Absorbing { &[] } else { Self::REQUIRES }
     }
     /// [`Material::is_coloured`].
@@ -170,6 +166,8 @@ pub trait Model {
     fn indices(&self) -> Option<(f64, Option<f64>)> {
         None
     }
+    /// [`Material::is_opaque`].
+    fn is_opaque(&self) -> bool;
     /// [`Material::keeps_all`].
     fn keeps_all(&self) -> bool {
         false
@@ -196,8 +194,8 @@ impl Material {
         self.kind() == Kind::Scattering
     }
 
-    /// The machinery it needs, of `REQUIREMENTS`.
-    pub fn requires(&self) -> &'static [&'static str] {
+    /// The machinery it needs, each with its place in reports.
+    pub fn requires(&self) -> &'static [(u8, &'static str)] {
         ask!(self, requires())
     }
 
@@ -215,6 +213,11 @@ impl Material {
     /// Whether light passes into another medium.
     pub fn is_transparent(&self) -> bool {
         self.indices().is_some()
+    }
+
+    /// Whether surely no light gets through. (A table may send some.)
+    pub fn is_opaque(&self) -> bool {
+        ask!(self, is_opaque())
     }
 
     /// Whether it absorbs nothing, in any channel.

@@ -118,6 +118,12 @@ fn grids_that_cannot_be_are_refused_where_they_stand() {
         let text = errors.iter().map(|e| format!("{e} {}\n", e.required())).collect::<String>();
         assert!(text.contains(words) && text.contains("test.toml:"), "{keys}: {text}");
     }
+    // Cells of grids count among those of all receivers: 64 grids and their maps' one cell each are more than 2^26.
+    let many = (0..64).map(|i| {
+        format!("[[receiver]]\nname = \"r{i}\"\nsurface = \"desk\"\ncells = [1, 1]\ngrid = [1024, 1024]\n")
+    });
+    let errors = try_scene(&desk(&many.collect::<String>())).unwrap_err();
+    assert!(errors[0].to_string().contains("`r63`, with which there are 67108928 cells"), "{errors:?}");
     let ball = "[[surface]]\nname = \"ball\"\ntype = \"sphere\"\nmaterial = \"black\"\ncenter = [3, 0, 0]\n\
                 radius = 0.5\n[[receiver]]\nsurface = \"ball\"\ngrid = [2, 2]\n";
     let errors = try_scene(&desk(ball)).unwrap_err();

@@ -1,11 +1,11 @@
-//! The numbers: tilt table, the record of ten, the record of three, angles and candela.
+//! The numbers: the record of ten, the record of three, angles and candela.
 
 use super::angles;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::lm63::tokens::{Number, Tokens};
 use crate::photometry::axes::{Axis, AxisNote, check_axes};
 use crate::photometry::opening::sign;
-use crate::photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Tilt, TiltTable, Web};
+use crate::photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Tilt, Web};
 
 /// Angles on one axis, and pairs of a tilt table, that are read at most. The finest real table has 721.
 const MAX_ANGLES: usize = 100_000;
@@ -44,13 +44,13 @@ impl<'a> Reader<'a> {
         self.warn(number.offset, Kind::Range, &format!("{what} {}", number.text), required, hint);
     }
 
-    fn refuse<T>(&self, number: &Number, kind: Kind, what: &str, required: &str) -> Result<T> {
+    pub fn refuse<T>(&self, number: &Number, kind: Kind, what: &str, required: &str) -> Result<T> {
         let found = format!("{what} {}", number.text);
         Err(self.tokens.place(number.offset, Diagnostic::new(kind, found, required)))
     }
 
     /// A number that must be one of these integers; `1.0` is one.
-    fn code(&mut self, what: &str, allowed: &[u32], required: &str) -> Result<u32> {
+    pub fn code(&mut self, what: &str, allowed: &[u32], required: &str) -> Result<u32> {
         let number = self.tokens.number(what)?;
         match allowed.iter().find(|&&code| f64::from(code) == number.value) {
             Some(&code) => Ok(code),
@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A count: a positive integer within the cap, also written `19.0`.
-    fn count(&mut self, what: &str) -> Result<usize> {
+    pub fn count(&mut self, what: &str) -> Result<usize> {
         let number = self.tokens.number(what)?;
         if !(number.value >= 1.0 && number.value.fract() == 0.0) {
             return self.refuse(&number, Kind::Range, what, "a whole number, 1 or more");
@@ -89,25 +89,6 @@ impl<'a> Reader<'a> {
             self.doubt(&number, what, required, hint);
         }
         Ok(number.value)
-    }
-
-    /// The block of `TILT=INCLUDE`, or a tilt file: geometry, number of pairs, angles, factors.
-    pub fn tilt_table(&mut self) -> Result<TiltTable> {
-        let geometry = self.code("lamp-to-luminaire geometry", &[1, 2, 3], "1, 2 or 3")?;
-        let n = self.count("number of tilt angles")?;
-        self.tokens.require(2 * n as u64, |_| format!("one of {n} tilt angles and {n} factors"))?;
-        let angles = self.tokens.numbers(n, "tilt angle")?;
-        let factors = self.tokens.numbers(n, "tilt factor")?;
-        let mut falling = angles.windows(2).filter(|w| w[1].value <= w[0].value);
-        if let Some(pair) = falling.next() {
-            return self.refuse(&pair[1], Kind::Range, "tilt angle", "angles in strictly increasing order");
-        }
-        let upright = angles.iter().zip(&factors).find(|(angle, _)| angle.value == 0.0);
-        if let Some((_, factor)) = upright.filter(|(_, factor)| factor.value != 1.0) {
-            let found = format!("tilt factor {} at 0 degrees", factor.text);
-            self.warn(factor.offset, Kind::Range, &found, "1 at 0 degrees", "tilt factors are not applied");
-        }
-        Ok(TiltTable { geometry, angles_deg: values(&angles), factors: values(&factors) })
     }
 
     /// Everything from the number of lamps on: a luminaire without labels and tilt.
@@ -331,7 +312,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn values(list: &[Number]) -> Vec<f64> {
+pub fn values(list: &[Number]) -> Vec<f64> {
     list.iter().map(|n| n.value).collect()
 }
 

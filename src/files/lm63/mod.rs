@@ -19,6 +19,7 @@ mod commas;
 mod decode;
 mod doubts;
 mod header;
+mod tilt;
 mod tokens;
 
 pub use body::generation_type;
@@ -26,7 +27,7 @@ pub use body::generation_type;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bytes::{check_length, read_capped};
 use crate::files::excerpt::quoted;
-use crate::photometry::{Photometry, Tilt, TiltTable};
+use crate::photometry::Photometry;
 use body::Reader;
 use header::{Header, has_tilt_line, read_header};
 use std::path::Path;
@@ -82,54 +83,12 @@ fn parse_text(text: &str, tilt_file: TiltFile<'_>) -> Result<Photometry> {
 /// Also the count of numbers left over.
 fn parse_body(text: &str, header: Header<'_>, tilt_file: TiltFile<'_>) -> Result<(Photometry, u64)> {
     let mut reader = Reader { warnings: header.warnings, ..Reader::new(text, header.body) };
-    let tilt = read_tilt(header.tilt, &mut reader, tilt_file)?;
+    let tilt = tilt::read(header.tilt, &mut reader, tilt_file)?;
     let luminaire = reader.luminaire(header.revision)?;
     let surplus = warn_about_rest(&mut reader);
     let mut photometry = Photometry { labels: header.labels, tilt, warnings: reader.warnings, ..luminaire };
     doubts::compare(&mut photometry);
     Ok((photometry, surplus))
-}
-
-/// What TILT= says; `value` begins at byte `offset`.
-fn read_tilt((value, offset): (&str, usize), reader: &mut Reader, tilt_file: TiltFile<'_>) -> Result<Tilt> {
-    let mut words = value.split_whitespace();
-    let first = words.next().unwrap_or("");
-    if first.is_empty() {
-        let d = Diagnostic::new(Kind::Missing, "nothing after TILT=", "NONE, INCLUDE or the name of a file");
-        return Err(reader.tokens.place(offset, d));
-    }
-    let none = first.eq_ignore_ascii_case("NONE");
-    if none || first.eq_ignore_ascii_case("INCLUDE") {
-        if words.next().is_some() {
-            let found = format!("TILT={}", quoted(value));
-            reader.warn(offset, Kind::Syntax, &found, "nothing after NONE or INCLUDE", "the rest is ignored");
-        }
-        return if none { Ok(Tilt::None) } else { reader.tilt_table().map(Tilt::Include) };
-    }
-    let name = if first.eq_ignore_ascii_case("FILE") && words.next().is_some() {
-        let found = format!("TILT={}", quoted(value));
-        let required = "TILT= and the name of the file";
-        reader.warn(offset, Kind::Syntax, &found, required, "FILE is not part of LM-63");
-        value[first.len()..].trim()
-    } else {
-        value
-    };
-    let table = read_tilt_file(name, tilt_file).map_err(|d| {
-        let found = format!("tilt file {}", quoted(name));
-        let hint = format!("tilt factors are not applied anyway; {d}");
-        reader.warn(offset, d.kind(), &found, "a readable tilt file", &hint);
-    });
-    Ok(Tilt::File { name: name.to_owned(), table: table.ok() })
-}
-
-/// A tilt file beside the photometric file; folders in its name belong to another machine and are dropped.
-fn read_tilt_file(name: &str, tilt_file: TiltFile<'_>) -> Result<TiltTable> {
-    let base = name.rsplit(['/', '\\']).next().filter(|base| !["", ".", ".."].contains(base));
-    let Some(base) = base else {
-        return Err(Diagnostic::new(Kind::Missing, quoted(name), "the name of a file"));
-    };
-    let bytes = tilt_file(base)?;
-    Reader::new(&decode::decode(&bytes), 0).tilt_table()
 }
 
 /// What stands behind the last candela value: another luminaire, surplus numbers, other text; the count of

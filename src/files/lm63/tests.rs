@@ -3,7 +3,7 @@
 use crate::files::lm63::*;
 use crate::photometry::opening::OpeningShape;
 use crate::photometry::web::Symmetry;
-use crate::photometry::{PhotometricType, Revision, Summary};
+use crate::photometry::{PhotometricType, Revision, Summary, Tilt, TiltTable};
 
 /// A small file in parts, so that each test changes one of them.
 #[derive(Clone)]

@@ -14,11 +14,15 @@ use crate::surface::{Event, Incidence, Kind, Leg, Model, Throughput, Way, Ways};
 use crate::units::LUMINANCE_OF_RGB;
 
 impl Model for Tabulated {
-    const REQUIRES: &[&str] = &["tabulated scattering"];
+    const REQUIRES: &[(u8, &'static str)] = &[(4, "tabulated scattering")];
 
     #[inline]
     fn kind(&self) -> Kind {
         Kind::Scattering
+    }
+
+    fn is_opaque(&self) -> bool {
+        false
     }
 
     fn is_coloured(&self) -> bool {
