@@ -128,6 +128,7 @@ pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
 pub use report::statistics::{GridStatistics, ReceiverStatistics};
 pub use report::text::summary;
+pub use report::uniformity::Uniformity;
 pub use report::vtp::write_vtp as write_map_vtp;
 // Studies:
 pub use lab::certificate::{Certificate, Judge};

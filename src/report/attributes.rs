@@ -7,7 +7,8 @@ use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
 use crate::scene::receiver::{ReceiverEvents, ReceiverSide};
 
-use super::statistics::{ReceiverStatistics, why_no_error};
+use super::statistics::ReceiverStatistics;
+use super::unknown::why_no_error;
 
 /// Attributes of one receiver's map.
 pub fn attributes(

@@ -16,7 +16,8 @@ use crate::transport::census::Exceptions;
 
 use super::camera::CameraReport;
 use super::numbers::grouped;
-use super::statistics::{ReceiverStatistics, why_no_error};
+use super::statistics::ReceiverStatistics;
+use super::unknown::why_no_error;
 
 /// Everything report.json says. Names are a contract: they are only added to.
 #[derive(Debug, Clone, Serialize)]

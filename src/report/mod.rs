@@ -5,6 +5,8 @@
 pub mod numbers;
 pub mod colour;
 pub mod statistics;
+pub mod uniformity;
+pub mod unknown;
 pub mod attributes;
 pub mod maps;
 pub mod ply;

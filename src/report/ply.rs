@@ -30,8 +30,7 @@ pub fn write_ply(
     receiver: &Receiver,
     statistics: &ReceiverStatistics,
 ) -> Result<bool> {
-    let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize];
-    let Shape::Mesh(mesh) = &surface.shape else { return Ok(false) };
+    let Some(mesh) = mesh_of(scene, receiver) else { return Ok(false) };
     let mut comments = comments(scene, outcome, receiver).to_vec();
     comments.push("quality = illuminance_lx; lengths in metres".to_string());
     if let Some(most) = statistics.hits.iter().find(|hits| u32::try_from(**hits).is_err()) {
@@ -54,6 +53,14 @@ pub fn write_ply(
         Ok(())
     })?;
     Ok(true)
+}
+
+/// The mesh that a receiver is on, where it is on one.
+pub(super) fn mesh_of<'s>(scene: &'s Scene, receiver: &Receiver) -> Option<&'s Mesh> {
+    match &scene.geometry.surfaces()[receiver.surface.0 as usize].shape {
+        Shape::Mesh(mesh) => Some(mesh),
+        _ => None,
+    }
 }
 
 /// Where the numbers of a mesh's file come from, a line each.

@@ -2,12 +2,11 @@
 
 use serde::Serialize;
 
-use crate::estimate::extremes::{Interval, Unknown};
 use crate::run::Outcome;
 use crate::scene::evaluation::Grid;
 use crate::scene::receiver::{Cells, Receiver};
 
-use super::numbers::{grouped, rounded};
+use super::uniformity::Uniformity;
 
 /// A receiver's map in lux, and the numbers that sum it up. Names are those of report.json: they are only added to.
 #[derive(Debug, Clone, Serialize)]
@@ -33,17 +32,9 @@ pub struct ReceiverStatistics {
     pub max_lx: f64,
     /// `min_lx / mean_lx`, noise included; `None` where nothing arrived.
     pub uniformity_u0: Option<f64>,
-    /// U0 = minimum / mean, with its error; `None` where cells are too noisy for it.
-    pub u0: Option<Interval>,
-    /// Ud = minimum / maximum, with its error.
-    pub ud: Option<Interval>,
-    /// Illuminance of the darkest cell, lx, with its error.
-    pub minimum: Option<Interval>,
-    /// Illuminance of the brightest cell, lx, with its error.
-    pub maximum: Option<Interval>,
-    /// Why these four are not given, and what would do.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    /// The extremes of its cells.
+    #[serde(flatten)]
+    pub uniformity: Uniformity,
     /// The evaluation grid, where the receiver has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<GridStatistics>,
@@ -68,36 +59,22 @@ pub struct GridStatistics {
     pub mean_lx: f64,
     /// Its standard error, lx.
     pub mean_standard_error_lx: Option<f64>,
-    /// U0 of the means over its cells.
-    pub u0: Option<Interval>,
-    /// Ud of them.
-    pub ud: Option<Interval>,
-    /// The least of them, lx.
-    pub minimum: Option<Interval>,
-    /// The greatest, lx.
-    pub maximum: Option<Interval>,
-    /// Why these four are not given, and what would do.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reason: Option<String>,
+    /// The extremes of the means over its cells.
+    #[serde(flatten)]
+    pub uniformity: Uniformity,
 }
 
 impl GridStatistics {
     fn new(outcome: &Outcome, index: usize, grid: &Grid) -> Self {
         let (nu, nv, unit) = (grid.nu, grid.nv, outcome.photon_lm);
         let (mean, extremes) = outcome.grid(index, grid.area_m2);
-        let reason = extremes.err().map(|why| why_unknown(why, Cells::Grid { nu, nv }, outcome));
-        let extremes = extremes.ok();
         Self {
             nu,
             nv,
             border_m: grid.border_m,
             mean_lx: mean.value * unit,
             mean_standard_error_lx: mean.standard_error.map(|error| error * unit),
-            u0: extremes.map(|e| e.u0),
-            ud: extremes.map(|e| e.ud),
-            minimum: extremes.map(|e| e.minimum.times(unit)),
-            maximum: extremes.map(|e| e.maximum.times(unit)),
-            reason,
+            uniformity: Uniformity::new(extremes, Cells::Grid { nu, nv }, outcome),
         }
     }
 }
@@ -130,9 +107,6 @@ impl ReceiverStatistics {
         let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
         let lit = mean_lx > 0.0;
         let extremes = outcome.extremes(index, receiver.areas_m2());
-        let reason = extremes.err().map(|why| why_unknown(why, receiver.cells, outcome));
-        let extremes = extremes.ok();
-        let in_lx = |of: Option<Interval>| of.map(|interval| interval.times(outcome.photon_lm));
         Self {
             hits: outcome.cells()[index].sum.clone(),
             flux_lm: flux.value,
@@ -141,11 +115,7 @@ impl ReceiverStatistics {
             mean_lx,
             max_lx,
             uniformity_u0: lit.then(|| min_lx / mean_lx),
-            u0: extremes.map(|e| e.u0),
-            ud: extremes.map(|e| e.ud),
-            minimum: in_lx(extremes.map(|e| e.minimum)),
-            maximum: in_lx(extremes.map(|e| e.maximum)),
-            reason,
+            uniformity: Uniformity::new(extremes, receiver.cells, outcome),
             grid: receiver.grid.map(|grid| GridStatistics::new(outcome, index, &grid)),
             area_m2,
             cells,
@@ -153,48 +123,6 @@ impl ReceiverStatistics {
             illuminance_lx,
             standard_error_lx,
         }
-    }
-}
-
-/// Why extremes and uniformity of these cells are not given, and what would do.
-fn why_unknown(why: Unknown, cells: Cells, outcome: &Outcome) -> String {
-    match why {
-        Unknown::OneReplicate => why_no_error(outcome).unwrap_or("one replicate has no spread").to_owned(),
-        Unknown::Dark => "no light arrives".to_owned(),
-        Unknown::OneCell => "one cell".to_owned(),
-        Unknown::Noisy { photons, error, bound, cells: fewer, more } => {
-            let grid =
-                fewer.and_then(|fewer| coarser(cells, fewer)).map_or(String::new(), |grid| grid + ", or ");
-            let [photons, error, bound] = [photons, 100.0 * error, 100.0 * bound].map(|x| rounded(x, 2));
-            let more = grouped(more.ceil() as u64);
-            format!(
-                "cells are too noisy: {photons} photons in a cell, an error of {error} % of the mean where {bound} % \
-                 is allowed; {grid}{more} times the photons would do"
-            )
-        }
-    }
-}
-
-/// A division into at most so many cells of the same shape, in words.
-fn coarser(cells: Cells, most: u64) -> Option<String> {
-    match cells {
-        Cells::Grid { nu, nv } => {
-            let scale = (most as f64 / (f64::from(nu) * f64::from(nv))).sqrt();
-            let [nu, nv] = [nu, nv].map(|n| ((f64::from(n) * scale) as u64).max(1));
-            (nu * nv > 1).then(|| format!("[{nu}, {nv}] cells"))
-        }
-        Cells::Faces { .. } => Some(format!("{} faces of equal area", grouped(most))),
-    }
-}
-
-/// Why a run has no standard error, where it has none.
-pub fn why_no_error(outcome: &Outcome) -> Option<&'static str> {
-    match (outcome.replicates, outcome.plan.algorithm().sequence.is_randomised()) {
-        (2.., _) => None,
-        (_, false) => {
-            Some("this sequence has no seed: there is one replicate, and one set of points has no spread")
-        }
-        (_, true) => Some("one replicate: the points of one set are not independent of each other"),
     }
 }
 
@@ -215,11 +143,7 @@ mod tests {
                 mean_lx: 0.0,
                 max_lx: 0.0,
                 uniformity_u0: None,
-                u0: None,
-                ud: None,
-                minimum: None,
-                maximum: None,
-                reason: None,
+                uniformity: Uniformity::default(),
                 grid: None,
                 area_m2: 1.0,
                 cells: 1,

@@ -1,13 +1,15 @@
 //! The printed summary of a run, for a lighting engineer.
 
-use std::fmt::{Error, Result, Write};
+use std::fmt::{Result, Write};
 
 use crate::estimate::extremes::Interval;
 use crate::run::{Estimate, Outcome, StoppedBy};
 use crate::scene::Scene;
 
 use super::numbers::{digits, grouped, rounded, with_error, written};
-use super::statistics::{GridStatistics, ReceiverStatistics, why_no_error};
+use super::statistics::{GridStatistics, ReceiverStatistics};
+use super::uniformity::Uniformity;
+use super::unknown::why_no_error;
 
 /// The summary: what was run, every receiver, where the flux went, how good it is and how long it took.
 pub fn summary(
@@ -83,36 +85,32 @@ fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &
     Ok(())
 }
 
-/// Extremes as intervals; whether there are any.
-fn write_intervals(out: &mut String, intervals: [Option<Interval>; 4]) -> std::result::Result<bool, Error> {
-    if let [Some(minimum), Some(maximum), Some(u0), Some(ud)] = intervals {
-        let lx = |i: Interval| format!("{} lx ({} to {})", digits(i.value), digits(i.low), digits(i.high));
-        let share = |i: Interval| format!("{:.3} ({:.3} to {:.3})", i.value, i.low, i.high);
-        writeln!(out, "               min {}, max {}", lx(minimum), lx(maximum))?;
-        writeln!(out, "  uniformity   U0 = min/mean = {}, Ud = min/max = {}; 95 %", share(u0), share(ud))?;
-    }
-    Ok(intervals.iter().all(Option::is_some))
+/// Extremes as intervals, or why there are none.
+fn write_uniformity(out: &mut String, of: &Uniformity) -> Result {
+    let Uniformity { u0: Some(u0), ud: Some(ud), minimum: Some(minimum), maximum: Some(maximum), .. } = of
+    else {
+        let why = of.reason.as_deref().unwrap_or("no light arrives");
+        return writeln!(out, "  uniformity   not known: {why}");
+    };
+    let lx = |i: &Interval| format!("{} lx ({} to {})", digits(i.value), digits(i.low), digits(i.high));
+    let share = |i: &Interval| format!("{:.3} ({:.3} to {:.3})", i.value, i.low, i.high);
+    writeln!(out, "               min {}, max {}", lx(minimum), lx(maximum))?;
+    writeln!(out, "  uniformity   U0 = min/mean = {}, Ud = min/max = {}; 95 %", share(u0), share(ud))
 }
 
-/// Extremes, or why there are none: those of noisy cells are noise.
+/// Extremes of the cells and of the evaluation grid. Where they are not known the cells' are noise, and said to be.
 fn write_extremes(out: &mut String, s: &ReceiverStatistics) -> Result {
-    if !write_intervals(out, [s.minimum, s.maximum, s.u0, s.ud])? {
+    if s.uniformity.u0.is_none() {
         let [least, most] = [s.min_lx, s.max_lx].map(digits);
         writeln!(out, "               cells from {least} to {most} lx, noise included")?;
-        writeln!(out, "  uniformity   not known: {}", s.reason.as_deref().unwrap_or("no light arrives"))?;
     }
+    write_uniformity(out, &s.uniformity)?;
     if let Some(grid) = &s.grid {
         let mean = with_error(grid.mean_lx, grid.mean_standard_error_lx, "lx");
         let GridStatistics { nu, nv, border_m, .. } = grid;
         let border = if *border_m > 0.0 { format!(" without {border_m} m of border") } else { String::new() };
         writeln!(out, "  grid         {nu} x {nv} cells{border}, values are their means: mean {mean}")?;
-        if !write_intervals(out, [grid.minimum, grid.maximum, grid.u0, grid.ud])? {
-            writeln!(
-                out,
-                "  uniformity   not known: {}",
-                grid.reason.as_deref().unwrap_or("no light arrives")
-            )?;
-        }
+        write_uniformity(out, &grid.uniformity)?;
     }
     Ok(())
 }

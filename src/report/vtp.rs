@@ -9,12 +9,12 @@ use std::path::Path;
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
 use crate::files::base64::base64;
-use crate::geometry::{Mesh, Shape};
+use crate::geometry::Mesh;
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 
-use super::ply::comments;
+use super::ply::{comments, mesh_of};
 use super::statistics::ReceiverStatistics;
 
 /// Writes the faces of one receiver; false, and no file, where its surface is no mesh.
@@ -28,8 +28,7 @@ pub fn write_vtp(
     receiver: &Receiver,
     statistics: &ReceiverStatistics,
 ) -> Result<bool> {
-    let surface = &scene.geometry.surfaces()[receiver.surface.0 as usize];
-    let Shape::Mesh(mesh) = &surface.shape else { return Ok(false) };
+    let Some(mesh) = mesh_of(scene, receiver) else { return Ok(false) };
     // Two hyphens end a comment of XML.
     let comments = comments(scene, outcome, receiver).join("\n").replace("--", "- -");
     write_atomically(path, |out| write(out, mesh, statistics, &comments))?;

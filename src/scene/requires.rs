@@ -37,10 +37,13 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("camera", scene.camera.is_some()),
         ("stored photons", scene.camera.as_ref().is_some_and(|c| c.method == Method::Map)),
     ];
-    let required =
-        |list: Vec<(&'static str, bool)>| list.into_iter().filter_map(|(word, is)| is.then_some(word));
-    let of_emitters_and_shapes = required(of_emitters_and_shapes.to_vec());
-    emission.chain(of_emitters_and_shapes).chain(of_materials).chain(required(of_the_rest.to_vec())).collect()
+    let of_emitters_and_shapes = of_emitters_and_shapes.into_iter().filter_map(if_required);
+    let of_the_rest = of_the_rest.into_iter().filter_map(if_required);
+    emission.chain(of_emitters_and_shapes).chain(of_materials).chain(of_the_rest).collect()
+}
+
+fn if_required((word, is_required): (&'static str, bool)) -> Option<&'static str> {
+    is_required.then_some(word)
 }
 
 /// Words in the order of their ranks, each once.

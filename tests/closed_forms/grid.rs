@@ -77,8 +77,12 @@ border_m = 0.16
         assert_eq!([grid.nu as usize, grid.nv as usize], counts);
         let error = grid.mean_standard_error_lx.unwrap();
         assert!((grid.mean_lx - mean).abs() < 4.0 * error && error < 0.01 * mean, "{} {mean}", grid.mean_lx);
-        let intervals =
-            [(grid.u0, least / mean), (grid.ud, least / most), (grid.minimum, least), (grid.maximum, most)];
+        let intervals = [
+            (grid.uniformity.u0, least / mean),
+            (grid.uniformity.ud, least / most),
+            (grid.uniformity.minimum, least),
+            (grid.uniformity.maximum, most),
+        ];
         for (interval, truth) in intervals {
             let interval = interval.unwrap();
             assert!(interval.low <= truth && truth <= interval.high, "{truth}: {interval:?}");
@@ -86,10 +90,10 @@ border_m = 0.16
         }
     }
     // 256 x 256 cells are noise: no number, and a grid that would do.
-    assert!(numbers[0].u0.is_none() && numbers[0].minimum.is_none());
-    let reason = numbers[0].reason.as_ref().unwrap();
+    assert!(numbers[0].uniformity.u0.is_none() && numbers[0].uniformity.minimum.is_none());
+    let reason = numbers[0].uniformity.reason.as_ref().unwrap();
     assert!(reason.contains("too noisy") && reason.contains("] cells, or "), "{reason}");
-    assert!(numbers[1].u0.is_some() && numbers[1].reason.is_none());
+    assert!(numbers[1].uniformity.u0.is_some() && numbers[1].uniformity.reason.is_none());
 }
 
 /// The grid of the map's own cells counts what the map counts, and changes nothing of it.
