@@ -6,6 +6,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
 use crate::files::bytes::read_capped;
 use crate::files::exr::Value;
+use crate::files::kinds::{Use, instead};
 use crate::files::photon_map;
 use crate::files::set::Set;
 use crate::picture;
@@ -64,8 +65,8 @@ pub(super) fn check(args: &RenderArgs, scene: &Scene) -> Result<()> {
 /// # Errors
 /// A file that cannot be read, is damaged, or holds other photons than this scene and these settings give.
 pub(super) fn read<const C: usize>(path: &Path, scene: &Scene, plan: &Plan) -> Result<SavedMap<C>> {
+    let bytes = read_capped(path, MOST_MAP_BYTES).map_err(|e| e.in_file(path))?;
     let read = || {
-        let bytes = read_capped(path, MOST_MAP_BYTES)?;
         let hash = hash_of_photons(scene, plan);
         let saved = match photon_map::channels(&bytes)? {
             3 => photon_map::read::<3>(&bytes, &hash)?.in_channels(),
@@ -74,7 +75,11 @@ pub(super) fn read<const C: usize>(path: &Path, scene: &Scene, plan: &Plan) -> R
         check_saved(scene, &saved)?;
         Ok(saved)
     };
-    read().map_err(|e: Diagnostic| e.in_file(path))
+    read().map_err(|e: Diagnostic| {
+        let name = path.display().to_string();
+        let other = instead(&bytes, Use::PhotonMap, "a photon map that caustix saved", &name);
+        other.unwrap_or(e).in_file(path)
+    })
 }
 
 /// Writes the photons of a picture.

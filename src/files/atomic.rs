@@ -42,7 +42,14 @@ pub fn write_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<()> {
 /// [`Kind::Io`], with the path.
 pub fn make_directory(path: &Path, required: &str) -> Result<()> {
     fs::create_dir_all(path).map_err(|e| {
-        Diagnostic::new(Kind::Io, format!("\"{e}\" while making the directory"), required).in_file(path)
+        // What stands in the way, where it is a file: the system's words for that are many.
+        let file = path.ancestors().find(|part| part.is_file());
+        let found = match file {
+            Some(file) if file == path => "a file where a folder is to be made".to_string(),
+            Some(file) => format!("a file `{}` where a folder is to be made", file.display()),
+            None => format!("\"{e}\" while making the folder"),
+        };
+        Diagnostic::new(Kind::Io, found, required).in_file(path)
     })
 }
 

@@ -1,12 +1,13 @@
 //! Files as bytes: capped, regular files only, and those of a scene each once.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::excerpt::visible;
+use crate::files::suggest;
 use crate::math::digest::sha256_hex;
 
 /// Largest file that a scene may name (mesh, photometric file, image): 1 GiB.
@@ -88,8 +89,13 @@ fn open(path: &Path, limit_bytes: u64) -> Result<File> {
     let shown = visible(&path.display().to_string());
     let io = |why: String| Diagnostic::new(Kind::Io, why, "a file that can be read");
     // The kind is asked before opening: opening a pipe waits for its other end.
-    let metadata = std::fs::metadata(path)
-        .map_err(|e| io(format!("the file `{shown}`, which cannot be opened: {e}")))?;
+    let metadata = std::fs::metadata(path).map_err(|e| match e.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => like_it(io(format!("no file `{shown}`")), path),
+        _ => io(format!("the file `{shown}`, which cannot be opened: {e}")),
+    })?;
+    if metadata.is_dir() {
+        return Err(io(format!("`{shown}`, which is a folder")));
+    }
     if !metadata.is_file() {
         return Err(io(format!("`{shown}`, which is not a file")));
     }
@@ -97,6 +103,29 @@ fn open(path: &Path, limit_bytes: u64) -> Result<File> {
         return Err(too_large(path, limit_bytes));
     }
     File::open(path).map_err(|e| io(format!("the file `{shown}`, which cannot be opened: {e}")))
+}
+
+/// The error that a file is not there, with the one of its folder that was probably meant: of the same ending, and a name
+/// near its own.
+fn like_it(error: Diagnostic, path: &Path) -> Diagnostic {
+    const MOST_LOOKED_AT: usize = 1000;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return error.hint(format!("there is no folder `{}`", visible(&folder.display().to_string())));
+    };
+    let ending = |path: &Path| path.extension().map(|ending| ending.to_ascii_lowercase());
+    let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    let near = |found: &PathBuf| found.is_file() && ending(found) == ending(path);
+    let mut near: Vec<PathBuf> = entries.take(MOST_LOOKED_AT).flatten().map(|entry| entry.path()).filter(near).collect();
+    near.sort();
+    let stems: Vec<String> = near.iter().filter_map(|path| stem(path)).collect();
+    let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
+    let meant = suggest::nearest(&stem(path).unwrap_or_default(), &stems);
+    let meant = near.iter().find(|path| stem(path).as_deref() == meant && meant.is_some());
+    match meant.and_then(|path| path.file_name()) {
+        Some(name) => error.hint(format!("did you mean `{}`?", visible(&name.to_string_lossy()))),
+        None => error,
+    }
 }
 
 fn too_large(path: &Path, limit_bytes: u64) -> Diagnostic {

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::mesh_formats;
+use crate::files::kinds::{Use, instead};
 use crate::files::obj_text::{Checked, check};
 use crate::geometry::mesh::NO_NORMAL;
 use crate::geometry::{Mesh, MeshParts, Smoothing, Transform};
@@ -32,15 +32,13 @@ pub struct ObjOptions {
 pub fn parse_obj(bytes: &[u8], name: &Path, options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
     parse(bytes, options)
         .map(|(mesh, warnings)| (mesh, warnings.into_iter().map(|w| w.in_file(name)).collect()))
-        .map_err(|d| d.in_file(name))
+        .map_err(|d| {
+            let name = name.display().to_string();
+            instead(bytes, Use::Mesh, "a mesh in an OBJ file", &name).unwrap_or(d).in_file(name)
+        })
 }
 
 fn parse(bytes: &[u8], options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
-    if let Some(what) = mesh_formats::other(bytes) {
-        let found = format!("{what} file, a format that is not read");
-        let d = Diagnostic::new(Kind::Unavailable, found, "a mesh in an OBJ file").at(1, 1);
-        return Err(d.hint("export the mesh as OBJ, or convert the file (Blender, MeshLab)"));
-    }
     // Names and comments may be in any encoding; geometry is ASCII.
     let text = String::from_utf8_lossy(bytes);
     let mut checked = check(text.strip_prefix('\u{feff}').unwrap_or(&text))?;

@@ -15,6 +15,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf::words::Words;
 use crate::files::bytes::{check_length, read_capped};
 use crate::files::excerpt::quoted;
+use crate::files::kinds::{Use, ZEMAX, instead};
 use crate::scattering::ScatterTable;
 
 /// Larger files are refused; a MERL file has 35 MB.
@@ -39,34 +40,28 @@ impl Format {
     /// # Errors
     /// [`Kind::Unavailable`] for formats that are known and not read, [`Kind::Unknown`] for the rest.
     pub fn of(bytes: &[u8], name: &str) -> Result<Self> {
-        let refuse = |kind, found: String| {
-            let required = "a caustix, Zemax/Radiant, MERL or Klems XML table";
-            Err(Diagnostic::new(kind, found, required).at(1, 1).in_file(name))
-        };
+        let required = "a caustix, Zemax/Radiant, MERL or Klems XML table";
         if merl::is_merl(bytes) {
             return Ok(Self::Merl);
         }
+        if let Some(other) = instead(bytes, Use::Scattering, required, name) {
+            return Err(other);
+        }
         let head = String::from_utf8_lossy(&bytes[..bytes.len().min(64 << 10)]);
         let mut words = Words::new(&head);
-        let (first, second) = (words.next(), words.next());
+        let first = words.next();
         let starts = |word: &str| first.is_some_and(|w| w.is(word));
-        let unread = [
-            (bytes.starts_with(b"tensor_file"), "an RGL tensor file"),
-            (starts("OPTIS"), "a Speos file"),
-            (starts("type") && second.is_some_and(|w| w.is("bsdf_data")), "a FRED file"),
-        ];
-        if let Some((_, what)) = unread.iter().find(|(is_this, _)| *is_this) {
-            return refuse(Kind::Unavailable, (*what).to_owned());
-        }
-        let keywords = ["Source", "Symmetry", "SpectralContent", "ScatterType", "SampleRotation"];
         match Path::new(name).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
             _ if starts(text::MAGIC) => Ok(Self::Text),
             _ if first.is_some_and(|w| w.text.starts_with('<')) => Ok(Self::Klems),
-            _ if keywords.iter().any(|k| starts(k)) => Ok(Self::Zemax),
+            _ if ZEMAX.iter().any(|k| starts(k)) => Ok(Self::Zemax),
             Some("bsdf") => Ok(Self::Zemax),
             Some("xml") => Ok(Self::Klems),
             Some("binary") => Ok(Self::Merl),
-            _ => refuse(Kind::Unknown, first.map_or("a file without a word".to_owned(), |w| quoted(w.text))),
+            _ => {
+                let found = first.map_or("a file without a word".to_owned(), |w| quoted(w.text));
+                Err(Diagnostic::new(Kind::Unknown, found, required).at(1, 1).in_file(name))
+            }
         }
     }
 

@@ -35,7 +35,7 @@ use crate::files::bsdf::words::{Word, Words, number};
 use crate::scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 
 /// The first word of a file.
-pub(crate) const MAGIC: &str = "caustix-scattering";
+pub(crate) use crate::files::kinds::SCATTERING as MAGIC;
 
 /// Reads the bytes of a table; `file` stands for the name of a table that does not name itself.
 ///

@@ -133,31 +133,10 @@ pub(crate) fn read_header(text: &str) -> Result<Header<'_>> {
         }
         add_label(&mut labels, line);
     }
-    if is_eulumdat(text) {
-        let d = Diagnostic::new(Kind::Unavailable, "an EULUMDAT file (.ldt)", "an IES LM-63 file (.ies)");
-        return Err(d.at(1, 1).hint("EULUMDAT is not read yet: convert the file to IES LM-63"));
-    }
     let (line, column) = line_column(text, numbers_at.unwrap_or(text.trim_end().len()));
     let found = if numbers_at.is_some() { "numbers before any TILT line" } else { "the end of the file" };
     let required = "a line TILT=NONE, TILT=INCLUDE or TILT=file before the numbers";
     Err(Diagnostic::new(Kind::Missing, found, required).at(line, column).hint("is this an LM-63 file?"))
-}
-
-/// Whether lines 2 to 7 are those of an EULUMDAT file: kind, symmetry, planes and their distance, angles and theirs.
-fn is_eulumdat(text: &str) -> bool {
-    let numbers: Vec<f64> = lines(text)
-        .skip(1)
-        .take(6)
-        .map_while(|(_, line)| line.trim().replace(',', ".").parse().ok())
-        .collect();
-    let [kind, symmetry, planes, between_planes, angles, between_angles] = numbers[..] else { return false };
-    let is_whole = |x: f64, low: f64, high: f64| x.fract() == 0.0 && (low..=high).contains(&x);
-    is_whole(kind, 0.0, 3.0)
-        && is_whole(symmetry, 0.0, 4.0)
-        && is_whole(planes, 1.0, 1e4)
-        && is_whole(angles, 1.0, 1e4)
-        && (0.0..=360.0).contains(&between_planes)
-        && (0.0..=180.0).contains(&between_angles)
 }
 
 /// The edition that the lines before TILT have named.

@@ -16,7 +16,6 @@
 mod angles;
 mod body;
 mod commas;
-mod decode;
 mod doubts;
 mod header;
 mod tilt;
@@ -26,7 +25,9 @@ pub use body::generation_type;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bytes::{check_length, read_capped};
+use crate::files::decode::decode;
 use crate::files::excerpt::quoted;
+use crate::files::kinds::{Use, instead};
 use crate::photometry::Photometry;
 use body::Reader;
 use header::{Header, has_tilt_line, read_header};
@@ -64,7 +65,10 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
 /// The same where tilt files can be had.
 pub(crate) fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result<Photometry> {
     check_length(bytes, MAX_FILE_BYTES).map_err(|d| d.in_file(name))?;
-    let mut photometry = parse_text(&decode::decode(bytes), tilt).map_err(|d| d.in_file(name))?;
+    let mut photometry = parse_text(&decode(bytes), tilt).map_err(|d| {
+        let other = instead(bytes, Use::Photometric, "an IES LM-63 file (.ies)", name);
+        other.unwrap_or(d).in_file(name)
+    })?;
     photometry.file = name.to_owned();
     photometry.warnings = photometry.warnings.into_iter().map(|d| d.in_file(name)).collect();
     Ok(photometry)

@@ -2,7 +2,7 @@
 
 use super::TiltFile;
 use super::body::{Reader, values};
-use super::decode;
+use crate::files::decode::decode;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::excerpt::quoted;
 use crate::photometry::{Tilt, TiltTable};
@@ -50,7 +50,7 @@ fn read_tilt_file(name: &str, tilt_file: TiltFile<'_>) -> Result<TiltTable> {
         return Err(Diagnostic::new(Kind::Missing, quoted(name), "the name of a file"));
     };
     let bytes = tilt_file(base)?;
-    table(&mut Reader::new(&decode::decode(&bytes), 0))
+    table(&mut Reader::new(&decode(&bytes), 0))
 }
 
 /// The block of `TILT=INCLUDE`, or a tilt file: geometry, number of pairs, angles, factors.

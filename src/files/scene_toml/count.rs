@@ -22,8 +22,28 @@ pub const COUNT_REQUIRED: &str = "a whole number from 1 to 2^48, written like 4_
 pub fn parse_count(text: &str) -> Result<u64> {
     value(text.trim()).map_err(|(kind, why)| {
         let shown: String = text.chars().take(40).collect();
-        Diagnostic::new(kind, format!("`{shown}`{why}"), COUNT_REQUIRED)
+        let error = Diagnostic::new(kind, format!("`{shown}`{why}"), COUNT_REQUIRED);
+        match meant(text.trim()) {
+            Some(meant) => error.hint(format!("write {meant}")),
+            None => error,
+        }
     })
+}
+
+/// The count that people mean by `4M`, or by `1,000,000` and `1 000 000`.
+fn meant(text: &str) -> Option<String> {
+    const LETTERS: [(char, u32); 6] = [('k', 3), ('K', 3), ('M', 6), ('m', 6), ('G', 9), ('T', 12)];
+    let suffixed = LETTERS.iter().find_map(|(letter, zeros)| Some((text.strip_suffix(*letter)?.trim_end(), zeros)));
+    let meant = match suffixed {
+        Some((number, zeros)) if number.ends_with(|c: char| c.is_ascii_digit()) => format!("{number}e{zeros}"),
+        Some(_) => return None,
+        None => {
+            let groups: Vec<&str> = text.split([',', ' ', '\'', '\u{a0}', '\u{202f}']).collect();
+            let of_three = groups.iter().skip(1).all(|group| group.len() == 3);
+            (groups.len() > 1 && of_three).then(|| groups.join("_"))?
+        }
+    };
+    value(&meant).is_ok().then_some(meant)
 }
 
 /// Why a text is no count: the class of the error, and what is said behind the text.
@@ -125,6 +145,22 @@ mod tests {
             ("100000000000001e0", 100_000_000_000_001),
         ] {
             assert_eq!(parse_count(text), Ok(value), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_meant_is_told() {
+        for (text, meant) in [
+            ("4M", Some("write 4e6")),
+            ("4.5 k", Some("write 4.5e3")),
+            ("1,000,000", Some("write 1_000_000")),
+            ("1 000", Some("write 1_000")),
+            ("1,5", None),
+            ("M", None),
+            ("many", None),
+            ("1e9T", None),
+        ] {
+            assert_eq!(parse_count(text).unwrap_err().advice(), meant, "{text}");
         }
     }
 

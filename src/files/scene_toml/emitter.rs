@@ -6,7 +6,7 @@ use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::DIRECTION;
 use super::part::EmitterPart;
-use super::suggest;
+use crate::files::suggest;
 use super::table::{Placed, Table};
 use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{

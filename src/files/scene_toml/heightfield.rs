@@ -6,6 +6,7 @@ use super::loader::{Loader, Make};
 use super::table::{Placed, Table, shown};
 use crate::error::{Diagnostic, Kind};
 use crate::files::height_image;
+use crate::files::kinds::{Use, instead};
 use crate::geometry::{
     ANGLE, CELLS_REQUIRED, COORDINATE, Facing, Formula, HEIGHT, Heightfield, LENGTH, MOST_CELLS,
     MOST_OCTAVES, Noise, Octave, PEAK, RELATIVE, Shape, Wave,
@@ -46,8 +47,11 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
             count(table, name, nx * ny, all);
             Some(Box::new(move |loader: &mut Loader| {
                 let bytes = loader.bytes(&file)?;
-                let image =
-                    height_image::parse(&bytes, heights).map_err(|e| e.in_file(loader.path(&file)))?;
+                let image = height_image::parse(&bytes, heights).map_err(|e| {
+                    let name = loader.path(&file).display().to_string();
+                    let other = instead(&bytes, Use::Image, "a PNG of 8 or 16 bits", &name);
+                    other.unwrap_or(e).in_file(name)
+                })?;
                 let [columns, rows] = image.size();
                 let cells = cells.unwrap_or([columns as u32 - 1, rows as u32 - 1]);
                 // A picture of one grey packs a thousandfold: a small file must not ask for gigabytes of triangles.

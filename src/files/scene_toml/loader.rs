@@ -14,6 +14,9 @@ use crate::scene::steps::Steps;
 /// Makes a part of a scene; whatever it says of itself has been checked when its table was read.
 pub(crate) type Make<T> = Box<dyn FnOnce(&mut Loader) -> Result<T>>;
 
+/// Where files are looked for.
+const RELATIVE: &str = "paths are relative to the folder of the scene file";
+
 /// Makes what needs no file.
 pub(crate) fn made<T: 'static>(part: T) -> Make<T> {
     Box::new(move |_| Ok(part))
@@ -60,11 +63,16 @@ impl Loader {
 
     fn at_name(&self, file: &Placed<String>, error: Diagnostic) -> Diagnostic {
         let pointed = error.placed(Some(file.place)).in_file(&self.name);
-        match pointed.advice() {
-            Some(_) => pointed,
+        let hint = match file.value.as_str() {
             // No file is called so: an escape has come out of a path of Windows.
-            None if file.value.contains(char::is_control) => pointed.hint(format!("write {BACKSLASH}")),
-            None => pointed.hint("paths are relative to the folder of the scene file"),
-        }
+            path if path.contains(char::is_control) => format!("write {BACKSLASH}"),
+            path if path.contains("://") => "download it: files are not fetched from elsewhere".into(),
+            path if path.starts_with('~') => "write the whole path: `~` stands for nothing here".into(),
+            _ => match pointed.advice() {
+                Some(near) => format!("{near}; {RELATIVE}"),
+                None => RELATIVE.into(),
+            },
+        };
+        pointed.hint(hint)
     }
 }

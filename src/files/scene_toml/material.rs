@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::loader::{Make, made};
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::MaterialPart;
-use super::suggest;
+use crate::files::suggest;
 use super::table::Table;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf;

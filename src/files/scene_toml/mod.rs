@@ -17,7 +17,6 @@ mod numbers;
 mod part;
 mod parts;
 mod receiver;
-mod suggest;
 mod surface;
 mod syntax;
 mod table;
@@ -27,6 +26,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Diagnostic, Kind, Place};
 use crate::files::bytes::{Base, Files, read_capped};
+use crate::files::kinds::{Use, instead};
 use crate::math::digest::sha256_hex;
 use crate::scene::{Identity, Scene, SceneBuilder};
 use crate::surface::Kind as MaterialKind;
@@ -59,9 +59,14 @@ pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
     let path = path.as_ref();
     let name = path.display().to_string();
     let bytes = read_capped(path, SCENE_LIMIT_BYTES).map_err(|e| vec![e.in_file(&name)])?;
-    let text = std::str::from_utf8(&bytes).map_err(|e| vec![not_utf8(&bytes, e.valid_up_to(), &name)])?;
     let directory = path.parent().map(PathBuf::from).unwrap_or_default();
-    let file = parse(text, &name, Base::Directory(directory))?;
+    let file = std::str::from_utf8(&bytes)
+        .map_err(|e| vec![not_utf8(&bytes, e.valid_up_to(), &name)])
+        .and_then(|text| parse(text, &name, Base::Directory(directory)))
+        .map_err(|errors| match instead(&bytes, Use::Scene, "a scene file (TOML)", &name) {
+            Some(other) => vec![other],
+            None => errors,
+        })?;
     let missing: Vec<_> = file.parts.files.iter().filter_map(|f| file.loader.missing(f)).collect();
     if missing.is_empty() { Ok(file) } else { Err(missing) }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::document::Document;
-use super::suggest;
+use crate::files::suggest;
 use super::table::{Placed, Table, shown};
 use crate::error::{Diagnostic, Kind, Place};
 
@@ -15,11 +15,18 @@ const LONGEST_NAME: usize = 100;
 pub(crate) struct Names {
     what: &'static str,
     known: BTreeMap<String, (Place, usize)>,
+    /// What is to be said of a name that comes twice.
+    also: Option<&'static str>,
 }
 
 impl Names {
     pub(crate) fn new(what: &'static str) -> Self {
-        Self { what, known: BTreeMap::new() }
+        Self { what, known: BTreeMap::new(), also: None }
+    }
+
+    /// The same, with advice on a name that comes twice.
+    pub(crate) fn advising(self, hint: &'static str) -> Self {
+        Self { also: Some(hint), ..self }
     }
 
     /// Add a name, compared as `key`; a second use is an error at its place that says where the first one is.
@@ -36,7 +43,13 @@ impl Names {
             let found =
                 format!("the {what} name `{}` a second time (first in line {})", shown(name), first.line);
             let required = format!("a name of its own for every {what}");
-            document.error_at(*place, Kind::Range, found, required);
+            document.error(|| {
+                let error = Diagnostic::new(Kind::Range, found, required).at(place.line, place.column);
+                match self.also {
+                    Some(hint) => error.hint(hint),
+                    None => error,
+                }
+            });
             return;
         }
         self.known.insert(key.to_string(), (*place, index));

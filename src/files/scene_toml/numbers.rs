@@ -5,8 +5,8 @@ use toml::de::DeValue;
 
 use super::count::parse_count;
 use super::table::{Table, Value};
-use crate::error::Kind;
 use crate::error::invalid::Interval;
+use crate::error::{Diagnostic, Kind};
 
 /// Components of directions.
 pub(super) const DIRECTION: Interval = Interval { low: -1e9, high: 1e9, words: "a number from -1e9 to 1e9" };
@@ -29,6 +29,10 @@ impl<'t> Table<'t, '_> {
     fn number_in(&self, label: &str, value: Value<'t>, interval: &Interval) -> Option<f64> {
         match number_of(value.get_ref()) {
             Some(number) if interval.contains(number) => Some(number),
+            Some(percent) if (interval.low, interval.high) == (0.0, 1.0) && (1.0..=100.0).contains(&percent) => {
+                let hint = format!("{percent} % is {}", percent / 100.0);
+                self.advised(label, value, Kind::Range, interval.words, &hint)
+            }
             Some(_) => self.wrong(label, value, Kind::Range, interval.words),
             None => self.no_number(label, value, interval.words),
         }
@@ -37,10 +41,12 @@ impl<'t> Table<'t, '_> {
     /// Keep an error about a value that is no number; of one that is only in quotes, with advice.
     fn no_number<T>(&self, label: &str, value: Value<'t>, required: &str) -> Option<T> {
         let text = value.get_ref().as_str().map(|text| text.trim().replace(',', "."));
-        match text.filter(|text| text.parse::<f64>().is_ok_and(f64::is_finite)) {
-            Some(number) => {
-                self.advised(label, value, required, &format!("write it without quotes: {number}"))
-            }
+        let hint = text.and_then(|text| match text.parse::<f64>() {
+            Ok(number) => number.is_finite().then(|| format!("write it without quotes: {text}")),
+            Err(_) => without_unit(&text).map(|number| format!("write it without unit and quotes: {number}")),
+        });
+        match hint {
+            Some(hint) => self.advised(label, value, Kind::Syntax, required, &hint),
             None => self.wrong(label, value, Kind::Syntax, required),
         }
     }
@@ -83,7 +89,10 @@ impl<'t> Table<'t, '_> {
         read: impl Fn(&str, Value<'t>) -> Option<T>,
     ) -> Option<[T; N]> {
         let Some(items) = value.get_ref().as_array().filter(|items| items.len() == N) else {
-            return self.wrong(key, value, Kind::Syntax, required);
+            return match as_list::<N>(value.get_ref()) {
+                Some(list) => self.advised(key, value, Kind::Syntax, required, &format!("write {list}")),
+                None => self.wrong(key, value, Kind::Syntax, required),
+            };
         };
         let read = |(i, item)| read(&format!("{key}[{i}]"), item);
         let read: Vec<_> = items.iter().enumerate().map(read).collect();
@@ -121,7 +130,12 @@ impl<'t> Table<'t, '_> {
 
     fn integer_in(&self, label: &str, value: Value<'t>, low: u64, high: u64, words: &str) -> Option<u64> {
         let Some(integer) = value.get_ref().as_integer() else {
-            return self.no_number(label, value, words);
+            return match number_of(value.get_ref()).filter(|x| x.fract() == 0.0 && x.abs() < 1e15) {
+                Some(whole) => {
+                    self.advised(label, value, Kind::Syntax, words, &format!("write it without a point: {whole}"))
+                }
+                None => self.no_number(label, value, words),
+            };
         };
         match u64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(number) if (low..=high).contains(&number) => Some(number),
@@ -154,7 +168,11 @@ impl<'t> Table<'t, '_> {
             DeValue::String(text) => text.to_string(),
             _ => String::new(),
         };
-        parse_count(&text).map_err(|e| self.error(key, e.kind(), e.required())).ok()
+        let refused = |e: Diagnostic| match e.advice() {
+            Some(hint) => self.advised::<()>(key, value, e.kind(), e.required(), hint),
+            None => self.wrong(key, value, e.kind(), e.required()),
+        };
+        parse_count(&text).map_err(refused).ok()
     }
 }
 
@@ -167,6 +185,38 @@ fn radians_in_degrees(angle: f64) -> Option<f64> {
     let of = |step: f64| step * (degrees / step).round();
     let is_near = |round: &f64| *round != 0.0 && (degrees - round).abs() <= ROUNDED * round.abs();
     [of(30.0), of(45.0)].into_iter().filter(|round| round.abs() <= 360.0).find(is_near)
+}
+
+/// The number of a text such as `20 cm`, in metres, degrees, lumens, or parts of 1.
+fn without_unit(text: &str) -> Option<f64> {
+    const UNITS: [(&str, f64); 11] = [
+        ("m", 1.0),
+        ("mm", 1e3),
+        ("cm", 1e2),
+        ("km", 1e-3),
+        ("lm", 1.0),
+        ("klm", 1e-3),
+        ("deg", 1.0),
+        ("°", 1.0),
+        ("%", 1e2),
+        ("lumen", 1.0),
+        ("lumens", 1.0),
+    ];
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)))?;
+    let (_, divisor) = UNITS.iter().find(|(unit, _)| text[end..].trim() == *unit)?;
+    Some(text[..end].parse::<f64>().ok()? / divisor)
+}
+
+/// What is meant by a value where a list of two belongs: `16` or `"800x600"`.
+fn as_list<const N: usize>(value: &DeValue<'_>) -> Option<String> {
+    let pair = match value.as_str() {
+        Some(text) => {
+            let numbers = text.split(['x', '×', ',', ' ']).filter(|item| !item.is_empty());
+            numbers.map(|item| item.parse().ok()).collect::<Option<Vec<u32>>>()?
+        }
+        None => vec![value.as_integer()?.as_str().parse().ok()?; 2],
+    };
+    (N == 2 && pair.len() == 2).then(|| format!("[{}, {}]", pair[0], pair[1]))
 }
 
 /// A TOML number as f64; integers are welcome where a number is.

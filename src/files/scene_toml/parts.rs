@@ -92,7 +92,9 @@ impl Parts {
             surface::read(table, index, &mut surface_names, &material_names, &mut cells)
         });
 
-        let mut names = Names::new("receiver");
+        let mut names = Names::new("receiver").advising(
+            "give it another `name`: names become names of files, and some systems don't tell capitals from small letters",
+        );
         let receivers = read_each(parts_named(&mut root, "receiver"), |table, index| {
             receiver::read(table, index, &mut names, &surface_names, &surfaces)
         });

@@ -34,8 +34,9 @@ pub(super) fn read(
         _ => None,
     };
     if let Some(name) = &name {
-        // Cases are not told apart: some file systems don't, and the names become file names.
-        names.insert(table.document(), name, &name.value.to_lowercase(), index);
+        // Cases are not told apart: some file systems don't, and the names become file names. Upper case, since it is the
+        // one that tells no ss from a sharp s and no final sigma from another.
+        names.insert(table.document(), name, &name.value.to_uppercase(), index);
     }
     let cells = table.cells("cells", MOST_CELLS, CELLS_REQUIRED);
     let part = surface.as_ref().and_then(|(_, index)| surfaces.get(*index)?.as_ref());

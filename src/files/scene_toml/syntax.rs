@@ -53,10 +53,28 @@ pub(super) fn report(document: &Document<'_>, text: &str, faults: &[Error]) {
 
 const REQUIRED: &str = "TOML (https://toml.io): key = value, [table] or [[table]], and values such as 1.5, \"text\", true, [1, 2]";
 
-/// The rule that a line with a fault breaks, where one of those that people trip over is seen in its value.
+/// The rule that a line with a fault breaks, where one of those that people trip over is seen in it.
 fn rule_of(text: &str, number: usize) -> &'static str {
     let line = text.lines().nth(number - 1).unwrap_or_default();
-    let value = line.split_once('=').map_or("", |(_, value)| value.trim());
+    if line.contains(['“', '”', '„', '‘', '’']) {
+        return "straight quotes, \"text\"; those that a word processor makes are others";
+    }
+    let line = line.split(" #").next().unwrap_or_default().trim();
+    match line.split_once('=') {
+        Some((_, value)) => rule_of_value(value.trim()),
+        None if line.starts_with('[') => {
+            "a header such as [camera], or [[surface]] with two brackets, the same before each surface"
+        }
+        None if line.contains(':') => "key = value, with `=` in place of `:`",
+        None => REQUIRED,
+    }
+}
+
+fn rule_of_value(value: &str) -> &'static str {
+    let is_bare = |text: &str| text.chars().all(|c| c.is_alphanumeric() || "_-./ ".contains(c));
+    if value.is_empty() {
+        return "a value after the `=`";
+    }
     if value.starts_with('=') {
         return "one `=` between a key and its value";
     }
@@ -66,20 +84,52 @@ fn rule_of(text: &str, number: usize) -> &'static str {
     if value.strip_suffix(',').is_some_and(|value| is_whole(value.trim_end())) {
         return "no comma after a value: every key stands in a line of its own";
     }
+    if value.starts_with(['"', '\'']) && value.matches(&value[..1]).count() == 1 {
+        return "a text with a quote at its end, too";
+    }
+    if value.starts_with('(') {
+        return "a list in square brackets, as in [0.0, 0.0, 1.0]";
+    }
+    if let Some(list) = value.strip_prefix('[') {
+        let items = list.trim_end_matches(']').trim().split(',');
+        let is_apart = |item: &str| item.split_whitespace().count() > 1;
+        return match list.ends_with(']') {
+            false => "a list with a bracket ] at its end",
+            true if items.into_iter().any(is_apart) => "a comma between the values of a list, as in [0.0, 0.0, 1.0]",
+            true => REQUIRED,
+        };
+    }
     if is_number(value) && value.contains(',') {
         return "a decimal point, as in 1.5, instead of the comma";
     }
+    match value.to_ascii_lowercase().as_str() {
+        "true" | "false" => return "true or false in small letters",
+        "nan" | "infinity" => return "a number",
+        _ => {}
+    }
+    rule_of_number(value).unwrap_or(match value.starts_with(char::is_alphabetic) && is_bare(value) {
+        true => "a text in quotes, as in \"glass\"",
+        false => REQUIRED,
+    })
+}
+
+fn rule_of_number(value: &str) -> Option<&'static str> {
     let unsigned = value.trim_start_matches(['+', '-']);
-    let (signs, digits) = (value.len() - unsigned.len(), unsigned.as_bytes());
-    match digits {
+    let signs = value.len() - unsigned.len();
+    let behind = unsigned.trim_start_matches(|c: char| c.is_ascii_digit() || "._".contains(c)).trim_start();
+    Some(match unsigned.as_bytes() {
         [b'0'..=b'9', ..] if signs > 1 => "a number with at most one sign, before its first digit",
         [b'0', b'x' | b'o' | b'b', ..] if signs == 1 => {
             "a number that begins with 0x, 0o or 0b and has no sign"
         }
         [b'0', b'0'..=b'9', ..] => "a number without leading zeros",
         [b'0'..=b'9', ..] if unsigned.contains("__") => "a digit before and after every `_`",
-        _ => REQUIRED,
-    }
+        [b'0'..=b'9', ..] if behind.starts_with('^') => "a number, or a power in quotes, as in \"2^22\"",
+        [b'0'..=b'9', ..] if behind.starts_with(|c: char| c.is_alphabetic() || "%°µ".contains(c)) => {
+            "a number without a unit (metres, degrees, lumens), or a text in quotes"
+        }
+        _ => return None,
+    })
 }
 
 /// What to write instead of a backslash that is part of a path.

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::document::Document;
 pub(super) use super::document::Placed;
-use super::suggest;
+use crate::files::suggest;
 use crate::error::invalid::Invalid;
 use crate::error::{Diagnostic, Kind, Place};
 
@@ -87,8 +87,15 @@ impl<'t, 'd> Table<'t, 'd> {
     }
 
     /// Keep an error about a value of another kind, with what to do.
-    pub(super) fn advised<T>(&self, label: &str, value: Value<'t>, required: &str, hint: &str) -> Option<T> {
-        let error = || Diagnostic::new(Kind::Syntax, self.shown(label, value), required);
+    pub(super) fn advised<T>(
+        &self,
+        label: &str,
+        value: Value<'t>,
+        kind: Kind,
+        required: &str,
+        hint: &str,
+    ) -> Option<T> {
+        let error = || Diagnostic::new(kind, self.shown(label, value), required);
         self.document.error(|| error().placed(Some(self.at(value))).hint(hint));
         None
     }
@@ -100,6 +107,10 @@ impl<'t, 'd> Table<'t, 'd> {
     /// What a constructor made of the values; what it refused is an error at the key that it names.
     pub fn accept<T>(&self, made: Result<T, Invalid>) -> Option<T> {
         made.map_err(|e| match self.entries.get(e.what()) {
+            Some(value) if matches!(e, Invalid::NoDirection { what: "aim", .. }) => {
+                let hint = "not the point that is aimed at: that point minus `position`";
+                _ = self.advised::<()>(e.what(), value, e.kind(), &e.required(), hint);
+            }
             Some(_) => self.error(e.what(), e.kind(), &e.required()),
             None => self.document.error_at(self.place, e.kind(), e.found(), e.required()),
         })
@@ -174,7 +185,11 @@ impl<'t, 'd> Table<'t, 'd> {
     /// A table of its own, `{ ... }` or `[header.key]`.
     pub fn table(&mut self, key: &'static str, what: &str) -> Option<Table<'t, 'd>> {
         let value = self.take(key)?;
-        self.table_in(key, value, what, "a table { ... }")
+        let required = match value.get_ref().is_array() {
+            true => format!("one table, headed [{key}] (single brackets)"),
+            false => "a table { ... }".into(),
+        };
+        self.table_in(key, value, what, &required)
     }
 
     fn table_in(&self, label: &str, value: Value<'t>, what: &str, required: &str) -> Option<Table<'t, 'd>> {
@@ -199,6 +214,9 @@ impl<'t, 'd> Table<'t, 'd> {
         if items.is_empty() || items.len() > most {
             let found = format!("{} {key} tables", items.len());
             self.document.error_at(self.at(value), Kind::Limit, found, required);
+        }
+        // Too many are looked at all the same: what refers to one of them is no second error.
+        if items.is_empty() {
             return None;
         }
         let table = |(i, item)| self.table_in(&format!("{key}[{i}]"), item, what, required);
@@ -215,7 +233,6 @@ impl<'t, 'd> Table<'t, 'd> {
         if entries.len() > most {
             let found = format!("{} entries in {}", entries.len(), self.what);
             self.document.error_at(self.place, Kind::Limit, found, format!("at most {most}"));
-            entries.truncate(most);
         }
         let named = entries.into_iter().filter_map(|(key, value)| {
             let table = self.table_in(&shown(key.get_ref()), value, what, required)?;

@@ -1,6 +1,6 @@
-//! Bytes to text. LM-63 is ASCII; files are not.
+//! Bytes to text. Formats are ASCII or UTF-8; files are not.
 
-/// Text of a photometric file, whatever its encoding; never fails.
+/// Text of a file, whatever its encoding; never fails.
 ///
 /// A byte order mark or the pattern of NULs decides on UTF-16; valid UTF-8 is taken as such; anything else is read
 /// as Windows-1252, which gives every byte a character. Only labels can be wrong then (Shift-JIS, say): numbers and
@@ -19,6 +19,11 @@ pub(crate) fn decode(bytes: &[u8]) -> String {
         Some(unit) => utf16(bytes, unit),
         None => utf8_or_1252(bytes),
     }
+}
+
+/// Whether they are UTF-16.
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|mark| bytes.starts_with(mark)) || utf16_without_mark(bytes).is_some()
 }
 
 type Unit = fn([u8; 2]) -> u16;
