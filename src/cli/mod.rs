@@ -1,6 +1,7 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
 mod args;
+mod misuse;
 mod progress;
 mod results;
 mod picture;
@@ -16,14 +17,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::outputs::check_outputs;
 use crate::files::scene_toml::count::parse_count;
+use crate::files::suggest;
 use crate::plot::drawing::Drawing;
-use crate::run::Algorithm;
+use crate::run::{Algorithm, Variant};
 use crate::sequence::Sequence;
 
 use args::{BsdfArgs, CheckArgs, PhotometryArgs, RenderArgs, SampleArgs};
@@ -72,26 +73,6 @@ enum Sub {
     Bsdf(BsdfArgs),
 }
 
-/// What is not built, and what there is instead.
-const INSTEAD: [(&str, &str); 3] = [
-    ("--error", "--photons N sets the effort; the summary and report.json tell the standard errors it gave"),
-    ("--time", "--photons N sets the effort; Ctrl-C ends a run early and writes what there is"),
-    (
-        "--resume",
-        "a run starts with its first photon; `caustix compare` goes on from the parts it has finished",
-    ),
-];
-
-/// Adds to an unknown option of [`INSTEAD`] what there is instead.
-fn with_hint(mut error: clap::Error) -> clap::Error {
-    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return error };
-    if let Some((_, instead)) = INSTEAD.iter().find(|(unbuilt, _)| unbuilt == option) {
-        error.remove(ContextKind::SuggestedArg);
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![(*instead).into()]));
-    }
-    error
-}
-
 /// The exit code of a subcommand, or why it failed.
 type Done = Result<u8, Vec<Diagnostic>>;
 
@@ -101,10 +82,14 @@ pub fn main() -> ExitCode {
         Some(subcommand) => Ok(subcommand),
         None => RenderArgs::try_parse_from(["caustix"]).map(Sub::Render),
     });
-    let done = match parsed.map_err(with_hint) {
+    let done = match parsed {
         Err(error) => {
+            let of_file = misuse::of_file(&error);
+            let error = misuse::with_tip(error);
             // Help and version are no errors; clap writes either to where it belongs.
-            if !error.use_stderr() {
+            if let Some(diagnostic) = of_file {
+                say(&format!("error: {diagnostic}"));
+            } else if !error.use_stderr() {
                 printed(error.print());
             } else {
                 let _printed = error.print();
@@ -146,8 +131,12 @@ fn printed(outcome: io::Result<()>) {
     }
 }
 
-/// Says errors and gives the exit code for them.
+/// Says errors, after a line that counts them if they are several, and gives the exit code for them.
 fn fail(errors: &[Diagnostic]) -> u8 {
+    if let [first, _, ..] = errors {
+        let what = first.file().unwrap_or("this");
+        say(&format!("error: {what} cannot be used as it is: {} mistakes", errors.len()));
+    }
     for error in errors {
         say(&format!("error: {error}"));
     }
@@ -163,7 +152,11 @@ fn warn(warnings: &[Diagnostic]) {
 
 /// What is wrong with an option: its name before what was found.
 fn in_option(option: &str, error: &Diagnostic) -> Diagnostic {
-    Diagnostic::new(error.kind(), format!("{option}{}", error.found()), error.required().to_string())
+    let named = Diagnostic::new(error.kind(), format!("{option}{}", error.found()), error.required().to_string());
+    match error.advice() {
+        Some(hint) => named.hint(hint),
+        None => named,
+    }
 }
 
 /// A count given on the command line.
@@ -173,13 +166,20 @@ fn count(option: &str, text: Option<&String>) -> Result<Option<u64>> {
 
 /// A variant and a sequence given on the command line; `default` where no variant is.
 fn algorithm(default: Algorithm, variant: Option<&String>, sequence: Option<&String>) -> Result<Algorithm> {
-    let parse = |name: &String| Algorithm::parse(name).map_err(|e| in_option("--", &e));
+    let parse = |name: &String| {
+        let hinted = |e: Diagnostic| match Sequence::from_name(name) {
+            Some(_) => e.hint(format!("a sequence is given as `--sequence {name}`")),
+            None => suggest::hinted(e, name, &Variant::ALL.map(Variant::name), '`'),
+        };
+        Algorithm::parse(name).map_err(|e| hinted(in_option("--", &e)))
+    };
     let mut algorithm = variant.map_or(Ok(default), parse)?;
     if let Some(name) = sequence {
         algorithm.sequence = Sequence::from_name(name).ok_or_else(|| {
             let names: Vec<_> = Sequence::ALL.iter().map(|s| s.name()).collect();
             let required = format!("one of: {}", names.join(", "));
-            Diagnostic::new(Kind::Unknown, format!("--sequence {name}"), required)
+            let error = Diagnostic::new(Kind::Unknown, format!("--sequence {name}"), required);
+            suggest::hinted(error, name, &names, '`')
         })?;
     }
     Ok(algorithm)

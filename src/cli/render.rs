@@ -25,6 +25,7 @@ use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
 
 use super::args::MAX_THREADS;
+use super::misuse::a_folder;
 use super::progress::{INTERRUPTED, catch_interrupts, progress_bar};
 use super::{Done, RenderArgs, algorithm, count, exit, picture, print, results, say, warn};
 
@@ -34,6 +35,7 @@ const REPORT: &str = "report.json";
 /// Reads and builds a scene; without a path the built-in one.
 pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
     let file = match path {
+        Some(path) if path.is_dir() => return Err(a_folder(path, "a scene file (TOML)").into()),
         Some(path) => scene_toml::read(path)?,
         None => scene_toml::built_in()?,
     };

@@ -22,4 +22,4 @@ pub mod photon_map;
 pub mod png;
 pub mod scene_toml;
 pub mod set;
-mod suggest;
+pub(crate) mod suggest;

@@ -22,7 +22,13 @@ pub fn check_outputs(outputs: &[PathBuf], inputs: &[PathBuf]) -> Result<()> {
             return refused("a file that this command reads", path);
         }
     }
-    let mut written: Vec<(PathBuf, &PathBuf)> = outputs.iter().map(|path| (entry(path), path)).collect();
+    // Cases are not told apart: some file systems don't.
+    let without_case = |path: PathBuf| match path.file_name().and_then(|name| name.to_str()) {
+        Some(name) => path.with_file_name(name.to_uppercase()),
+        None => path,
+    };
+    let mut written: Vec<(PathBuf, &PathBuf)> =
+        outputs.iter().map(|path| (without_case(entry(path)), path)).collect();
     written.sort();
     match written.windows(2).find(|two| two[0].0 == two[1].0) {
         Some(two) => refused("another result of this command", two[1].1),
@@ -57,7 +63,9 @@ mod tests {
         };
         assert_eq!(refused(&["a.exr", "out/a.exr", "b.exr"], &["lamp.ies", "gone.ies"]), None);
         assert!(refused(&["a.exr", "out/../lamp.ies"], &["lamp.ies"]).unwrap().contains("reads"));
-        assert!(refused(&["out/a.exr", "out/../out/a.exr"], &[]).unwrap().contains("another result"));
+        for same in ["out/../out/a.exr", "out/A.EXR"] {
+            assert!(refused(&["out/a.exr", same], &[]).unwrap().contains("another result"));
+        }
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink(path("lamp.ies"), path("out/floor.png")).unwrap();

@@ -237,7 +237,7 @@ impl SceneBuilder {
     fn names_used_twice(&self) -> Vec<Diagnostic> {
         let emitters = self.emitters.iter().map(|part| ("emitter", part.name.clone(), &part.place));
         // Cases are not told apart: some file systems don't, and these names become file names.
-        let receivers = self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_lowercase(), place));
+        let receivers = self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_uppercase(), place));
         let mut known = BTreeSet::new();
         let again = emitters.chain(receivers).filter(|(what, name, _)| !known.insert((*what, name.clone())));
         again

@@ -11,6 +11,8 @@ use clap::Args;
 
 use crate::error::{Diagnostic, Kind, Result};
 
+use crate::lab::study::cells::MOST_CELLS;
+
 use super::args::{MAX_THREADS, whole};
 use super::render::load;
 use super::{Done, warn};
@@ -36,7 +38,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub reference_photons: Option<String>,
     /// Cells along each side of the grids that errors are measured on [default: 48,128,256].
-    #[arg(long, value_name = "K,K,...", value_delimiter = ',')]
+    #[arg(long, value_name = "K,K,...", value_delimiter = ',', allow_hyphen_values = true, value_parser = whole::<u32, 1, { MOST_CELLS as u64 }>)]
     pub cells: Vec<u32>,
     /// More variants: every form of rejection, other solvers and sequences. In a scene with `[compare]`: 10^7 photons.
     #[arg(long)]
