@@ -119,5 +119,6 @@ pub struct CheckArgs {
 /// used. clap puts the option and the text before the message.
 pub fn whole<T: TryFrom<u64>, const LOW: u64, const HIGH: u64>(text: &str) -> Result<T, String> {
     let value = text.parse::<u64>().ok().and_then(|n| T::try_from(n).ok());
-    value.ok_or_else(|| format!("required: a whole number from {LOW} to {HIGH}"))
+    let high = if HIGH == u64::MAX { "2^64 - 1".to_string() } else { HIGH.to_string() };
+    value.ok_or_else(|| format!("required: a whole number from {LOW} to {high}"))
 }

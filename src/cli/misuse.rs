@@ -33,6 +33,7 @@ pub(super) fn with_tip(mut error: clap::Error) -> clap::Error {
             Some(command) => format!("`caustix {command}` has {found}"),
             None => "`--help` lists the options".to_string(),
         },
+        None if Path::new(found).exists() => "one file is read at a time".to_string(),
         None => "names and numbers with spaces stand in quotes, and long options have two dashes".to_string(),
     };
     error.remove(ContextKind::SuggestedArg);

@@ -22,6 +22,7 @@ use clap::{Parser, Subcommand};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::outputs::check_outputs;
 use crate::files::scene_toml::count::parse_count;
+use crate::files::scene_toml::document::MOST_ERRORS;
 use crate::files::suggest;
 use crate::plot::drawing::Drawing;
 use crate::run::{Algorithm, Variant};
@@ -82,6 +83,11 @@ pub fn main() -> ExitCode {
         Some(subcommand) => Ok(subcommand),
         None => RenderArgs::try_parse_from(["caustix"]).map(Sub::Render),
     });
+    let scene = match &parsed {
+        Ok(Sub::Render(RenderArgs { scene, .. }) | Sub::Check(CheckArgs { scene, .. })) => scene.clone(),
+        Ok(Sub::Compare(compare::CompareArgs { scene, .. })) => scene.clone(),
+        _ => None,
+    };
     let done = match parsed {
         Err(error) => {
             let of_file = misuse::of_file(&error);
@@ -103,7 +109,7 @@ pub fn main() -> ExitCode {
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
     };
-    let code = done.unwrap_or_else(|errors| fail(&errors));
+    let code = done.unwrap_or_else(|errors| fail(scene.as_deref(), &errors));
     ExitCode::from(if CUT.load(Ordering::Relaxed) { exit::WRONG } else { code })
 }
 
@@ -132,10 +138,11 @@ fn printed(outcome: io::Result<()>) {
 }
 
 /// Says errors, after a line that counts them if they are several, and gives the exit code for them.
-fn fail(errors: &[Diagnostic]) -> u8 {
-    if let [first, _, ..] = errors {
-        let what = first.file().unwrap_or("this");
-        say(&format!("error: {what} cannot be used as it is: {} mistakes", errors.len()));
+fn fail(scene: Option<&Path>, errors: &[Diagnostic]) -> u8 {
+    if errors.len() > 1 {
+        let number = if errors.len() > MOST_ERRORS { format!("more than {MOST_ERRORS}") } else { errors.len().to_string() };
+        let scene = scene.map_or("the scene".into(), |path| path.display().to_string());
+        say(&format!("error: {scene} cannot be rendered: {number} mistakes"));
     }
     for error in errors {
         say(&format!("error: {error}"));

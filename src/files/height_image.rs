@@ -19,7 +19,7 @@ const LUMA: [f32; 3] = [0.21264784, 0.7151792, 0.07217304];
 /// Bytes that are no PNG, or one of more than 2^26 pixels. The diagnostic does not name the file.
 pub fn parse(bytes: &[u8], [low_m, high_m]: [f64; 2]) -> Result<HeightImage> {
     let no_png = |e: DecodingError| {
-        Diagnostic::new(Kind::Syntax, format!("no readable PNG: {e}"), "a PNG of 8 or 16 bits")
+        Diagnostic::new(Kind::Syntax, format!("no readable PNG: {}", e.to_string().trim_end_matches('.')), "a PNG of 8 or 16 bits")
     };
     let mut decoder =
         Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 16 * MOST_PIXELS as usize });

@@ -44,6 +44,9 @@ impl Line<'_> {
         let number = |word: &&str| match word.parse::<f64>() {
             Ok(x) if x.abs() <= MAX_COORDINATE_M => Ok(x),
             Ok(_) => Err(self.refuse(Kind::Range, word, quote(word), "a finite number up to 1e30")),
+            Err(_) if word.contains(',') => {
+                Err(self.refuse(Kind::Syntax, word, quote(word), "a number with a decimal point, not a comma"))
+            }
             Err(_) => Err(self.refuse(Kind::Syntax, word, quote(word), "a number")),
         };
         words.iter().map(number).collect()
@@ -103,7 +106,7 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
         }
     }
     if checked.face_lines.is_empty() {
-        return Err(Diagnostic::new(Kind::Missing, "no face", "at least one line f"));
+        return Err(Diagnostic::new(Kind::Missing, "no face", "at least one line `f 1 2 3`: points and lines alone are no surface"));
     }
     Ok(checked)
 }

@@ -82,9 +82,14 @@ fn called<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
     names.iter().find_map(|name| known.iter().find(|known| *known == name)).copied()
 }
 
+/// The known word that this one was meant to be, as far as one can tell.
+pub fn meant<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+    called(word, known).or_else(|| nearest(word, known))
+}
+
 /// The error with the known word that was probably meant instead of `word`, in these quotation marks.
 pub fn hinted(error: Diagnostic, word: &str, known: &[&str], mark: char) -> Diagnostic {
-    match called(word, known).or_else(|| nearest(word, known)) {
+    match meant(word, known) {
         Some(near) => error.hint(format!("did you mean {mark}{near}{mark}?")),
         None => error,
     }

@@ -30,9 +30,9 @@ fn wrong_usage_exits_2_and_help_and_version_exit_0() {
     }
     // A number that is none is told with what is required, negative ones included: they are no options.
     for (line, option, required) in [
-        ("render --seed x", "'x' for '--seed <K>'", "from 0 to 18446744073709551615"),
-        ("render --seed -1", "'-1' for '--seed <K>'", "from 0 to 18446744073709551615"),
-        ("render --seed 1.5", "'1.5' for '--seed <K>'", "from 0 to 18446744073709551615"),
+        ("render --seed x", "'x' for '--seed <K>'", "from 0 to 2^64 - 1"),
+        ("render --seed -1", "'-1' for '--seed <K>'", "from 0 to 2^64 - 1"),
+        ("render --seed 1.5", "'1.5' for '--seed <K>'", "from 0 to 2^64 - 1"),
         ("render --replicates -8", "'-8' for '--replicates <R>'", "from 1 to 65536"),
         ("render --threads x", "'x' for '--threads <T>'", "from 1 to 1024"),
     ] {

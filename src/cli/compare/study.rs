@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 
 use crate::cli::progress::{INTERRUPTED, processor_time};
 use crate::cli::render::thread_pool;
-use crate::cli::{Done, count, exit};
+use crate::cli::{Done, count, exit, in_option};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::parts::{from_bytes, to_bytes};
 use crate::lab::study::account::Events;
@@ -138,7 +138,11 @@ fn algorithms(args: &CompareArgs) -> Result<Vec<Algorithm>> {
     };
     let mut algorithms: Vec<Algorithm> = Vec::new();
     for name in names {
-        let algorithm = Algorithm::parse(name.trim())?;
+        let named = |e: Diagnostic| match name.contains([';', ' ']) {
+            true => in_option("--variants: ", &e).hint("variants are parted by commas"),
+            false => in_option("--variants: ", &e),
+        };
+        let algorithm = Algorithm::parse(name.trim()).map_err(named)?;
         if algorithms.contains(&algorithm) {
             let found = format!("variant {name} twice");
             return Err(Diagnostic::new(Kind::Range, found, "every variant once in --variants"));

@@ -69,7 +69,7 @@ impl Loader {
             path if path.contains("://") => "download it: files are not fetched from elsewhere".into(),
             path if path.starts_with('~') => "write the whole path: `~` stands for nothing here".into(),
             _ => match pointed.advice() {
-                Some(near) => format!("{near}; {RELATIVE}"),
+                Some(near) => format!("{near} {RELATIVE}"),
                 None => RELATIVE.into(),
             },
         };

@@ -212,6 +212,7 @@ fn not_utf8(bytes: &[u8], valid: usize, name: &str) -> Diagnostic {
     let place = Document::new(text, name).place(valid);
     let byte = bytes.get(valid).copied().unwrap_or_default();
     Diagnostic::new(Kind::Syntax, format!("the byte 0x{byte:02X}, which is not UTF-8"), "text in UTF-8")
+        .hint("save the file as UTF-8")
         .placed(Some(place))
         .in_file(name)
 }

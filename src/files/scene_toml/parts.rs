@@ -54,7 +54,7 @@ impl Parts {
         let emitter_tables = parts_named(&mut root, "emitter");
         if root.place_of("emitter").is_none() {
             let found = "a scene without [[emitter]]";
-            document.error_at(start, Kind::Missing, found, "at least one [[emitter]]");
+            root.absent("emitter", found, "at least one [[emitter]]");
         }
         let mut names = Names::new("emitter");
         let mut emitters = read_each(emitter_tables, |table, index| emitter::read(table, index, &mut names));

@@ -4,6 +4,8 @@
 //! what was found and what is required, all errors of a file are collected, and an unknown key is answered
 //! with the nearest known one. The keys a reader asks for are the keys that are known: they are written once.
 
+use std::cell::RefCell;
+
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -24,12 +26,28 @@ pub(super) struct Table<'t, 'd> {
     /// Where its header stands.
     place: Place,
     known: Vec<&'static str>,
+    /// Keys that are missing, with what was found and what is required: told when the table ends, but for those that an
+    /// unknown key was meant to be.
+    missing: RefCell<Vec<(&'static str, String, String)>>,
+    /// Known keys that unknown ones were meant to be.
+    meant: Vec<&'static str>,
+}
+
+impl Drop for Table<'_, '_> {
+    fn drop(&mut self) {
+        for (key, found, required) in self.missing.take() {
+            if !self.meant.contains(&key) {
+                self.document.error_at(self.place, Kind::Missing, found, required);
+            }
+        }
+    }
 }
 
 impl<'t, 'd> Table<'t, 'd> {
     /// The table `entries` whose header stands at `place`.
     pub fn new(document: &'d Document<'t>, entries: &'t DeTable<'t>, what: &str, place: Place) -> Self {
-        Self { document, entries, what: what.to_string(), place, known: Vec::new() }
+        let (known, missing, meant) = (Vec::new(), RefCell::default(), Vec::new());
+        Self { document, entries, what: what.to_string(), place, known, missing, meant }
     }
 
     /// Where its header stands.
@@ -73,7 +91,7 @@ impl<'t, 'd> Table<'t, 'd> {
     }
 
     /// Keep an error about the value of `key` (about the table, if the key is absent).
-    pub fn error(&self, key: &str, kind: Kind, required: &str) {
+    pub fn error(&self, key: &'static str, kind: Kind, required: &str) {
         match self.entries.get(key) {
             Some(value) => _ = self.wrong::<()>(key, value, kind, required),
             None => self.missing(key, required),
@@ -117,9 +135,13 @@ impl<'t, 'd> Table<'t, 'd> {
         .ok()
     }
 
-    fn missing(&self, key: &str, required: &str) {
-        let found = format!("{} without `{key}`", self.what);
-        self.document.error_at(self.place, Kind::Missing, found, format!("{key} = {required}"));
+    fn missing(&self, key: &'static str, required: &str) {
+        self.absent(key, format!("{} without `{key}`", self.what), format!("{key} = {required}"));
+    }
+
+    /// Keep the error that a key is missing, unless one that nobody knows was meant to be it.
+    pub(super) fn absent(&self, key: &'static str, found: impl Into<String>, required: impl Into<String>) {
+        self.missing.borrow_mut().push((key, found.into(), required.into()));
     }
 
     /// What `read` makes of a key; absent: an error.
@@ -235,18 +257,20 @@ impl<'t, 'd> Table<'t, 'd> {
             self.document.error_at(self.place, Kind::Limit, found, format!("at most {most}"));
         }
         let named = entries.into_iter().filter_map(|(key, value)| {
-            let table = self.table_in(&shown(key.get_ref()), value, what, required)?;
-            let place = self.document.place(key.span().start);
-            Some((key.get_ref().to_string(), Table { place, ..table }))
+            let mut table = self.table_in(&shown(key.get_ref()), value, what, required)?;
+            table.place = self.document.place(key.span().start);
+            Some((key.get_ref().to_string(), table))
         });
         named.collect()
     }
 
     /// Report every key that nobody asked for, with the nearest one that is known here.
-    pub fn finish(self) {
-        for (key, _) in self.entries.iter().filter(|(key, _)| !self.known.contains(&key.get_ref().as_ref())) {
+    pub fn finish(mut self) {
+        let entries = self.entries.iter();
+        for (key, _) in entries.filter(|(key, _)| !self.known.contains(&key.get_ref().as_ref())) {
+            let name = key.get_ref().as_ref();
+            self.meant.extend(suggest::meant(name, &self.known));
             self.document.error(|| {
-                let name = key.get_ref().as_ref();
                 let found = format!("the unknown key `{}` in {}", shown(name), self.what);
                 let error = Diagnostic::new(Kind::Unknown, found, suggest::list(&self.known));
                 let error = error.placed(Some(self.document.place(key.span().start)));
