@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
+use crate::error::words::{NAMED, names};
 use crate::files::folder::Folder;
 use crate::files::set::Written;
 use crate::scene::Scene;
@@ -12,8 +13,6 @@ use super::say;
 
 /// What the folder of a run is for.
 const FOR_RESULTS: &str = "a directory for the results";
-/// Names that are told before the rest are only counted.
-const MOST_NAMES: usize = 5;
 
 /// Takes the folder for this run, and says what was found in it.
 ///
@@ -51,7 +50,7 @@ pub fn tell(folder: &Folder, written: &Written, inputs: &[PathBuf]) {
     let others = folder.others(&ours, inputs);
     if !others.is_empty() {
         let files = if others.len() == 1 { "a file" } else { "files" };
-        say(&format!("caustix: {asked} also holds {files} that this run did not write: {}", names(&others)));
+        say(&format!("caustix: {asked} also holds {files} that this run did not write: {}", names(&others, NAMED)));
     }
 }
 
@@ -67,12 +66,4 @@ pub fn written_to(folder: &Folder, written: &Written) -> String {
 
 fn is_written(folder: &Folder, written: &Written) -> bool {
     !written.keeps_older || written.directory != folder.path()
-}
-
-fn names(all: &[String]) -> String {
-    let told = all[..all.len().min(MOST_NAMES)].join(", ");
-    match all.len().saturating_sub(MOST_NAMES) {
-        0 => told,
-        more => format!("{told} and {more} more"),
-    }
 }

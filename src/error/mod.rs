@@ -6,6 +6,7 @@
 
 pub mod invalid;
 pub mod warning;
+pub mod words;
 
 use std::fmt;
 use std::path::Path;

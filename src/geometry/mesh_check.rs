@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::openings::{opening, parts};
 use crate::error::warning::four_digits;
+use crate::error::words::names;
 use crate::error::{Diagnostic, Invalid, Kind};
 
 /// Findings about a mesh whose equal vertices have been welded. Faces go by their numbers in the file, from 1.
@@ -88,11 +89,11 @@ impl Topology {
             list.push(Diagnostic::new(Kind::Geometry, found, required));
         };
         if !self.degenerate.is_empty() {
-            let found = format!("degenerate faces {} (dropped)", numbers(&self.degenerate));
+            let found = format!("degenerate faces {} (dropped)", names(&self.degenerate, FACES));
             warn(found, "three different corners");
         }
         if !self.collinear.is_empty() {
-            warn(format!("faces without area {}", numbers(&self.collinear)), "corners not on one line");
+            warn(format!("faces without area {}", names(&self.collinear, FACES)), "corners not on one line");
         }
         if let Some((a, b)) = self.duplicates.first() {
             let found = format!("{} duplicate faces, the first {a} and {b}", self.duplicates.len());
@@ -119,12 +120,8 @@ impl Topology {
     }
 }
 
-/// Up to ten numbers, and how many there are.
-fn numbers(list: &[u32]) -> String {
-    let shown: Vec<String> = list.iter().take(10).map(u32::to_string).collect();
-    let more = if list.len() > 10 { format!(" and {} more", list.len() - 10) } else { String::new() };
-    shown.join(", ") + &more
-}
+/// Faces that a warning names before it only counts the rest.
+const FACES: usize = 10;
 
 /// One use of an edge.
 struct Use {

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+pub use crate::error::words::{grouped, names};
+
 /// The text that `write` puts together. Writing to a String cannot fail.
 pub fn written(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
     let mut out = String::new();
@@ -48,19 +50,6 @@ pub fn rounded(value: f64, significant: usize) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
-/// Digits in groups of three.
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut out = String::with_capacity(digits.len() + digits.len() / 3);
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(' ');
-        }
-        out.push(c);
-    }
-    out
-}
-
 /// A measured value with three significant digits, whole numbers from 1000 on; "-" for NaN.
 pub fn three_digits(value: f64) -> String {
     let size = value.abs();
@@ -83,14 +72,6 @@ pub fn bare(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map_or(String::new(), |v| v.to_string())
 }
 
-/// A list as people write it: "a, b and c".
-pub fn list(items: impl IntoIterator<Item = String>) -> String {
-    match items.into_iter().collect::<Vec<_>>().as_slice() {
-        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
-        alone => alone.concat(),
-    }
-}
-
 /// A line of a Markdown table.
 pub fn piped(cells: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     let cell = |c: &str| if c.is_empty() { " |".to_owned() } else { format!(" {c} |") };
@@ -108,8 +89,6 @@ mod tests {
 
     #[test]
     fn numbers_read_well() {
-        assert_eq!(grouped(4_456_448), "4 456 448");
-        assert_eq!(grouped(12), "12");
         assert_eq!(digits(0.0), "0");
         assert_eq!(digits(1234.5678), "1234.6");
         assert_eq!(digits(0.012_345_6), "0.012346");
@@ -141,11 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_and_foreign_text_read_well() {
-        let items = ["a", "b", "c"].map(String::from);
-        assert_eq!(list(items.clone()), "a, b and c");
-        assert_eq!(list(items.into_iter().take(2)), "a and b");
-        assert_eq!((list(["a".into()]), list([])), ("a".into(), "".into()));
+    fn foreign_text_reads_well() {
         assert_eq!(printable("a\u{1b}[31mb"), "a [31mb");
         assert_eq!(
             (bare(Some(0.25)), bare(Some(f64::NAN)), bare(None)),

@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::emitter::Emits;
 use crate::error::warning::{Severity, Warning, four_digits};
+use crate::error::words::{grouped, quoted_names};
 use crate::geometry::{Shape, SurfaceId, Whereabouts};
 use crate::scene::Scene;
 use crate::scene::receiver::{Receiver, ReceiverEvents};
@@ -24,8 +25,6 @@ const POINTS: usize = 16;
 const MOST_EMITTERS: usize = 16;
 /// Clear faces looked through.
 const MOST_FACES: usize = 64;
-/// Surfaces named.
-const NAMED: usize = 5;
 
 /// What is to be said of it; `is_told` where something was found already that keeps the light away.
 pub(super) fn warnings(scene: &Scene, outcome: &Outcome, is_told: bool) -> Vec<Warning> {
@@ -91,7 +90,7 @@ fn dark(scene: &Scene, outcome: &Outcome, is_told: bool, i: usize, receiver: &Re
         );
         ("other-events", message, remedy)
     } else if outcome.turned_away[i] == 0 && !is_told {
-        let photons = outcome.photons;
+        let photons = grouped(outcome.photons);
         match before(scene, receiver) {
             Some(surface) => {
                 let surface = scene.geometry.name(surface);
@@ -172,15 +171,12 @@ fn unmet(scene: &Scene, outcome: &Outcome) -> Option<Warning> {
     }
     let is_all = unmet.len() == specular.len() && scene.camera.is_none();
     let surfaces: Vec<String> = unmet.iter().map(|s| scene.geometry.name(*s).to_owned()).collect();
-    let mut names = surfaces.iter().take(NAMED).map(|s| format!("\"{s}\"")).collect::<Vec<_>>().join(", ");
-    if surfaces.len() > NAMED {
-        names += &format!(" and {} more", surfaces.len() - NAMED);
-    }
+    let names = quoted_names(&surfaces);
     let and = if is_all { ", and there is nothing else that refracts or reflects it" } else { "" };
     Some(Warning {
         severity: if is_all && outcome.photons >= MANY { Severity::Doubtful } else { Severity::Note },
         code: "unlit",
-        message: format!("no light met {names} ({} photons){and}", outcome.photons),
+        message: format!("no light met {names} ({} photons){and}", grouped(outcome.photons)),
         surfaces,
         share: None,
         remedy: "look at the place of the lamp, and at `translate` and the units of a mesh; what is very small or far away \

@@ -2,6 +2,7 @@
 //! built and by the photons.
 
 use crate::error::warning::{Severity, Warning, four_digits};
+use crate::error::words::quoted_names;
 use crate::geometry::{Shape, SurfaceId};
 use crate::scene::Scene;
 use crate::scene::inside::LAMP_INSIDE;
@@ -221,7 +222,7 @@ impl Run<'_> {
             message: format!(
                 "smooth normals of {}, up to {tilt_deg:.0} degrees off their facets, sent light to the wrong side of the facet, \
                  {} times a photon, and it was mirrored back",
-                surfaces.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "),
+                quoted_names(&surfaces),
                 times(share)
             ),
             surfaces,

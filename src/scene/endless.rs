@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::emitter::{Emission, Emits, Emitter};
+use crate::error::words::{grouped, quoted_names};
 use crate::error::{Diagnostic, Kind};
 use crate::geometry::{Geometry, Shape, Side, SurfaceId};
 use crate::sample::coordinates::Coordinates;
@@ -20,8 +21,6 @@ const PROBE_SEED: u64 = 0x656e_646c;
 /// Reflections after which a photon of it is taken to stay for ever, and faces that it may meet in all.
 const MOST_REFLECTIONS: u32 = 20_000;
 const MOST_FACES: u32 = 4 * MOST_REFLECTIONS;
-/// Surfaces named.
-const NAMED: usize = 6;
 
 /// The refusal of a scene of separate surfaces in which nothing absorbs, if most light does not find a way out;
 /// the first of the surfaces between which it goes round.
@@ -41,16 +40,16 @@ pub(super) fn of_room(scene: &Scene) -> Option<(SurfaceId, Diagnostic)> {
             return None;
         }
     }
-    let name = |s: &SurfaceId| format!("\"{}\"", scene.geometry.name(*s));
-    let mut names = walls.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
-    if walls.len() > NAMED {
-        names += &format!(" or one of {} more", walls.len() - NAMED);
-    }
     let found = format!(
-        "a scene in which nothing absorbs light: of {traced} photons {kept} went on after {MOST_REFLECTIONS} reflections"
+        "a scene in which nothing absorbs light: of {} photons {} went on after {} reflections",
+        grouped(traced),
+        grouped(kept),
+        grouped(u64::from(MOST_REFLECTIONS))
     );
     let required = "a surface that absorbs light, or a way out: it would never end";
-    let hint = format!("give {names} a reflectance below 1 (it is 1 where a mirror says none)");
+    let names = quoted_names(walls.iter().map(|s| scene.geometry.name(*s)));
+    let one_of = if walls.len() > 1 { "one of " } else { "" };
+    let hint = format!("give {one_of}{names} a reflectance below 1 (it is 1 where a mirror says none)");
     Some((first, Diagnostic::new(Kind::Geometry, found, required).hint(hint)))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::emitter::{Emits, Emitter};
 use crate::error::warning::{Severity, Warning, four_digits};
+use crate::error::words::quoted_names;
 use crate::surface::Material;
 
 use super::Scene;
@@ -48,14 +49,13 @@ fn with_cosine(scene: &Scene) -> Option<Warning> {
     });
     let (surfaces, defects): (Vec<_>, Vec<_>) = found.unzip();
     let worst = defects.into_iter().max_by(|a, b| a.as_it_stands.total_cmp(&b.as_it_stands))?;
-    let names: Vec<String> = surfaces.iter().map(|name| format!("\"{name}\"")).collect();
     Some(Warning {
         severity: Severity::Doubtful,
         code: "cosine-in-table",
         message: format!(
             "the scattering table of {} is far from reciprocal, by {:.0} %, but by {:.0} % if its values are divided by the cosine \
              of the scattered light's angle",
-            names.join(", "),
+            quoted_names(&surfaces),
             100.0 * worst.as_it_stands,
             100.0 * worst.divided
         ),

@@ -2,7 +2,7 @@
 
 use crate::lab::study::results::{Study, VariantResult};
 use crate::lab::study::table::Table;
-use crate::report::numbers::{grouped, list, piped, printable, three_digits};
+use crate::report::numbers::{grouped, names, piped, printable, three_digits};
 
 use super::numbers::{Column, DAGGERS, UNKNOWN, filled, known, of_paper};
 use super::remarks::{cells, footnotes, own_errors, reference, seeds, shown_photons, warnings};
@@ -49,9 +49,9 @@ pub fn markdown(study: &Study, table: &Table) -> String {
 fn opening(study: &Study) -> String {
     let (scene, command, hash) =
         (plain(&study.scene_name), printable(&study.command), one_line(&study.scene_sha256));
-    let receivers = list(study.receivers.iter().map(|r| plain(r)));
-    let grids = list(study.grids.iter().map(u32::to_string));
-    let (asked, ladder) = (grouped(study.asked_photons), list(study.ladder.iter().map(photons_in_short)));
+    let receivers = names(study.receivers.iter().map(|r| plain(r)), usize::MAX);
+    let grids = names(study.grids.iter().map(u32::to_string), usize::MAX);
+    let (asked, ladder) = (grouped(study.asked_photons), names(study.ladder.iter().map(photons_in_short), usize::MAX));
     let (seeds, threads, version) = (seeds(study), study.threads, plain(&study.caustix_version));
     let (reference, own_errors) = (plain(&reference(study)), own_errors(study));
     let mut out = format!(

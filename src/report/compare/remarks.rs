@@ -3,7 +3,7 @@
 use crate::lab::study::fit::Uncertainty;
 use crate::lab::study::results::{BASELINE, ReferenceUsed, Study};
 use crate::lab::study::table::{REFERENCE_MARGIN, Table};
-use crate::report::numbers::{grouped, list, three_digits};
+use crate::report::numbers::{grouped, names, three_digits};
 
 use super::numbers::Marks;
 
@@ -32,12 +32,12 @@ pub fn own_errors(study: &Study) -> String {
         let own = own.map_or("unknown".to_owned(), |own| format!("{} %", three_digits(100.0 * own)));
         format!("{own} on {} cells", cells(*grid))
     };
-    list(study.grids.iter().enumerate().map(on))
+    names(study.grids.iter().enumerate().map(on), usize::MAX)
 }
 
 /// The seeds, in words.
 pub fn seeds(study: &Study) -> String {
-    let seeds = list(study.seeds.iter().map(u64::to_string));
+    let seeds = names(study.seeds.iter().map(u64::to_string), usize::MAX);
     match study.seeds.len() {
         1 => format!("one seed ({seeds})"),
         several => format!("{several} seeds ({seeds})"),
@@ -80,7 +80,7 @@ fn limits(study: &Study, table: &Table) -> Vec<String> {
         for (g, grid) in study.grids.iter().enumerate() {
             let limited =
                 table.rows.iter().filter(|r| (r.variant, r.grid) == (v, g) && r.limited_by_reference);
-            let at = list(limited.map(|r| grouped(r.photons)));
+            let at = names(limited.map(|r| grouped(r.photons)), usize::MAX);
             if !at.is_empty() {
                 let (name, cells) = (&variant.name, cells(*grid));
                 warnings.push(format!(
