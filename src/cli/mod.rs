@@ -10,6 +10,7 @@ mod photometry;
 mod check;
 mod compare;
 mod sample;
+mod shell;
 mod bsdf;
 
 use std::io::{self, Write};
@@ -72,6 +73,10 @@ enum Sub {
     Sample(SampleArgs),
     /// Say what a scattering table (BSDF) holds: kind, angles, albedo against incidence, reciprocity.
     Bsdf(BsdfArgs),
+    /// Print a script that completes the command's words: of bash, zsh, fish, elvish or powershell.
+    Completions(shell::CompletionsArgs),
+    /// Print the manual page, in roff: `caustix man | man -l -`.
+    Man,
 }
 
 /// The exit code of a subcommand, or why it failed.
@@ -108,6 +113,8 @@ pub fn main() -> ExitCode {
         Ok(Sub::Compare(args)) => compare::run(&args),
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
+        Ok(Sub::Completions(args)) => shell::completions(&args),
+        Ok(Sub::Man) => shell::man(),
     };
     let code = done.unwrap_or_else(|errors| fail(scene.as_deref(), &errors));
     ExitCode::from(if CUT.load(Ordering::Relaxed) { exit::WRONG } else { code })
