@@ -11,12 +11,13 @@ use crate::error::{Diagnostic, Result};
 use crate::geometry::Shape;
 use crate::picture;
 use crate::report::json::json;
-use crate::report::numbers::digits;
+use crate::report::numbers::{digits, duration, grouped};
 use crate::run::dark::is_long;
 use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
 use crate::scene::{Scene, requires::requirements};
 
+use super::progress::Progress;
 use super::render::{say_found, strictly};
 use super::{CheckArgs, Done, exit, print, render, say, warn};
 
@@ -71,15 +72,6 @@ fn probe(scene: &Scene) -> Result<Probed> {
     said.sort_by_key(|warning| Reverse(warning.severity));
     let million_s = if is_long(&outcome) { 1e6 * outcome.trace_s / outcome.photons as f64 } else { 0.0 };
     Ok(Probed { photons: outcome.photons, million_s, said })
-}
-
-/// A time in words.
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s >= 5400.0 => format!("{:.1} hours", s / 3600.0),
-        s if s >= 90.0 => format!("{:.0} minutes", s / 60.0),
-        s => format!("{s:.0} s"),
-    }
 }
 
 #[derive(Debug, Serialize)]
@@ -191,13 +183,18 @@ impl Check {
         for s in &self.surfaces {
             let edges = match (s.triangles, s.open_edges) {
                 (0, _) => "exact".to_string(),
-                (n, 0) => format!("{n} triangles, closed"),
-                (n, open) => format!("{n} triangles, {open} open edges"),
+                (n, 0) => format!("{} triangles, closed", grouped(n as u64)),
+                (n, open) => format!("{} triangles, {} open edges", grouped(n as u64), grouped(open as u64)),
             };
             out += &format!("surface    {}: {edges}, {} m2\n", s.name, digits(s.area_m2));
         }
         for r in &self.receivers {
-            out += &format!("receiver   {}: {} cells, {} m2\n", r.name, r.cells, digits(r.area_m2));
+            out += &format!(
+                "receiver   {}: {} cells, {} m2\n",
+                r.name,
+                grouped(r.cells as u64),
+                digits(r.area_m2)
+            );
         }
         if let Some(c) = &self.camera {
             let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);
@@ -205,7 +202,10 @@ impl Check {
                 0.0 => String::new(),
                 mb => format!(", at most {mb:.0} MB of photons at a time"),
             };
-            out += &format!("camera     {columns} x {rows} pixels of {samples} samples, {method}{photons}\n");
+            out += &format!(
+                "camera     {columns} x {rows} pixels of {} samples, {method}{photons}\n",
+                grouped(samples.into())
+            );
         }
         out + &format!("memory     {:.1} MB\n", self.memory_mb)
     }
@@ -213,12 +213,14 @@ impl Check {
 
 /// Runs the subcommand; the exit code.
 pub fn run(args: &CheckArgs) -> Done {
-    let ready = render::load(args.scene.as_deref()).and_then(|(scene, _)| {
+    let ready = render::load(args.scene.as_deref(), args.json).and_then(|(scene, _)| {
         // What `render` refuses is not ready.
         picture::check(&scene)?;
         Ok(scene)
     });
+    let progress = Progress::new(args.json, "probing", 0);
     let ready = ready.and_then(|scene| Ok((probe(&scene)?, scene)));
+    progress.clear();
     if args.json {
         let check = ready
             .as_ref()
@@ -230,6 +232,7 @@ pub fn run(args: &CheckArgs) -> Done {
     let (probed, scene) = ready?;
     warn(&scene.warnings);
     let Probed { photons, million_s, said } = &probed;
+    let photons = grouped(*photons);
     for warning in said {
         if scene.found.contains(warning) {
             say_found(warning);

@@ -64,7 +64,9 @@ pub(super) fn of_file(error: &clap::Error) -> Option<Diagnostic> {
     let shown = typed(name);
     let (what, advice) = match kind_of(&head) {
         Some(kind) => (kind.what, advice(kind, &shown)),
-        None => ("a file of no kind that is known", format!("a scene is rendered by `caustix render {shown}`")),
+        None => {
+            ("a file of no kind that is known", format!("a scene is rendered by `caustix render {shown}`"))
+        }
     };
     Some(Diagnostic::new(Kind::Unknown, what, required).hint(advice).in_file(path))
 }

@@ -147,7 +147,11 @@ fn printed(outcome: io::Result<()>) {
 /// Says errors, after a line that counts them if they are several, and gives the exit code for them.
 fn fail(scene: Option<&Path>, errors: &[Diagnostic]) -> u8 {
     if errors.len() > 1 {
-        let number = if errors.len() > MOST_ERRORS { format!("more than {MOST_ERRORS}") } else { errors.len().to_string() };
+        let number = if errors.len() > MOST_ERRORS {
+            format!("more than {MOST_ERRORS}")
+        } else {
+            errors.len().to_string()
+        };
         let scene = scene.map_or("the scene".into(), |path| path.display().to_string());
         say(&format!("error: {scene} cannot be rendered: {number} mistakes"));
     }
@@ -166,7 +170,8 @@ fn warn(warnings: &[Diagnostic]) {
 
 /// What is wrong with an option: its name before what was found.
 fn in_option(option: &str, error: &Diagnostic) -> Diagnostic {
-    let named = Diagnostic::new(error.kind(), format!("{option}{}", error.found()), error.required().to_string());
+    let named =
+        Diagnostic::new(error.kind(), format!("{option}{}", error.found()), error.required().to_string());
     match error.advice() {
         Some(hint) => named.hint(hint),
         None => named,

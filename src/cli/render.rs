@@ -26,27 +26,42 @@ use crate::scene::receiver::{Cells, Receiver};
 
 use super::args::MAX_THREADS;
 use super::misuse::a_folder;
-use super::progress::{INTERRUPTED, catch_interrupts, progress_bar};
+use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::{Done, RenderArgs, algorithm, count, exit, picture, print, results, say, warn};
 
 /// The list of a run's files.
 const REPORT: &str = "report.json";
 
 /// Reads and builds a scene; without a path the built-in one.
-pub(super) fn load(path: Option<&Path>) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
+pub(super) fn load(
+    path: Option<&Path>,
+    quiet: bool,
+) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
+    let name = path.map_or("the built-in scene".into(), |path| path.display().to_string());
+    let progress = Progress::new(quiet, &format!("reading {name}"), 0);
+    let loaded = load_in_phases(path, || progress.phase(format!("building {name}")));
+    progress.clear();
+    loaded
+}
+
+fn load_in_phases(
+    path: Option<&Path>,
+    building: impl FnOnce(),
+) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
     let file = match path {
         Some(path) if path.is_dir() => return Err(a_folder(path, "a scene file (TOML)").into()),
         Some(path) => scene_toml::read(path)?,
         None => scene_toml::built_in()?,
     };
     let run = file.run;
+    building();
     Ok((file.build()?, run))
 }
 
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &RenderArgs) -> Done {
     let started = Instant::now();
-    let (scene, run) = load(args.scene.as_deref())?;
+    let (scene, run) = load(args.scene.as_deref(), args.quiet)?;
     warn(&scene.warnings);
     scene.found.iter().for_each(say_found);
     picture::check(args, &scene)?;
@@ -71,6 +86,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let receivers = scene.receivers.iter().enumerate();
     let statistics: Vec<_> = receivers.map(|(i, r)| ReceiverStatistics::new(&outcome, r, i)).collect();
     let mut set = Set::new(folder, REPORT)?;
+    let progress = Progress::new(args.quiet, "writing", 0);
     let mut files = Vec::new();
     for (receiver, s) in scene.receivers.iter().zip(&statistics) {
         files.push(write_receiver(&mut set, &scene, &outcome, receiver, s));
@@ -82,7 +98,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         // Of a whole run: part of one would not be what the settings say.
         match &args.save_map {
             Some(path) if !interrupted => unsaved = save_map(&mut set, &args.output, path, picture),
-            Some(_) => say("caustix: interrupted, so the photons are not saved"),
+            Some(_) => progress.suspend(|| say("caustix: interrupted, so the photons are not saved")),
             None => {}
         }
     }
@@ -90,6 +106,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
     report.see(camera, picture.as_ref().map_or(Vec::new(), |picture| seen_wrong(&scene, picture.summary())));
     let mut written = set.finish(|files| vouching(&report, files));
+    progress.clear();
     written.errors.extend(unsaved);
     results::tell(folder, &written, &inputs);
     if !args.quiet {
@@ -255,30 +272,28 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
 /// The picture of photons from a file.
 fn of_saved<const C: usize>(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan) -> Result<Picture<C>> {
     let pool = thread_pool(args.threads)?;
+    let progress = Progress::new(args.quiet, &format!("reading {}", map.display()), 0);
     let saved = picture::read(map, scene, plan)?;
-    let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|_| {} };
-    pool.install(|| picture_of_saved(scene, plan, saved, watch))
+    let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|share| progress.picture(share) };
+    let picture = pool.install(|| picture_of_saved(scene, plan, saved, watch));
+    progress.clear();
+    picture
 }
 
 fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<(Outcome, Option<AnyPicture>)> {
     let pool = thread_pool(args.threads)?;
-    let progress = progress_bar(args.quiet, plan.photons());
-    progress.set_message("tracing");
-    // The camera may have been at work before: photons are traced pass by pass.
-    let photons = |photons| {
-        progress.set_message("tracing");
-        progress.inc(photons);
-    };
+    let progress = Progress::new(args.quiet, "tracing", plan.photons());
+    let photons = |photons| progress.inc(photons);
     let outcome = pool.install(|| {
         if scene.camera.is_none() {
             return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
         }
         let watch =
-            Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|_| progress.set_message("camera") };
+            Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|share| progress.picture(share) };
         let (outcome, picture) = trace_picture(scene, plan, args.save_map.is_some(), watch)?;
         Ok((outcome, Some(picture)))
     });
-    progress.finish_and_clear();
+    progress.clear();
     outcome
 }
 

@@ -50,7 +50,10 @@ pub fn tell(folder: &Folder, written: &Written, inputs: &[PathBuf]) {
     let others = folder.others(&ours, inputs);
     if !others.is_empty() {
         let files = if others.len() == 1 { "a file" } else { "files" };
-        say(&format!("caustix: {asked} also holds {files} that this run did not write: {}", names(&others, NAMED)));
+        say(&format!(
+            "caustix: {asked} also holds {files} that this run did not write: {}",
+            names(&others, NAMED)
+        ));
     }
 }
 

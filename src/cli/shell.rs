@@ -27,7 +27,8 @@ pub(super) fn completions(args: &CompletionsArgs) -> Done {
 
 /// Runs `man`; the exit code.
 pub(super) fn man() -> Done {
-    let page = page().map_err(|e| Diagnostic::new(Kind::Io, format!("\"{e}\" while making the page"), "a page"))?;
+    let page =
+        page().map_err(|e| Diagnostic::new(Kind::Io, format!("\"{e}\" while making the page"), "a page"))?;
     print(&page);
     Ok(exit::DONE)
 }

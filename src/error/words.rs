@@ -40,13 +40,19 @@ pub fn grouped(n: u64) -> String {
     out
 }
 
+/// A limit as it is told: the large powers of two as powers.
+pub fn limit(most: u64) -> String {
+    if most.is_power_of_two() && most > 1 << 16 { format!("2^{}", most.ilog2()) } else { most.to_string() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn lists_name_some_and_count_the_rest() {
-        for (most, text) in [(0, "4 more"), (1, "a and 3 more"), (2, "a, b and 2 more"), (4, "a, b, c and d")] {
+        for (most, text) in [(0, "4 more"), (1, "a and 3 more"), (2, "a, b and 2 more"), (4, "a, b, c and d")]
+        {
             assert_eq!(names(["a", "b", "c", "d"], most), text);
         }
         assert_eq!((names([1], 5), names([0u32; 0], 5)), ("1".into(), String::new()));
@@ -56,6 +62,7 @@ mod tests {
 
     #[test]
     fn digits_are_grouped() {
+        assert_eq!([limit(1 << 26), limit(4096), limit(100_000)], ["2^26", "4096", "100000"]);
         assert_eq!([grouped(4_456_448), grouped(4096), grouped(12)], ["4 456 448", "4 096", "12"]);
     }
 }

@@ -26,7 +26,8 @@ pub fn write_atomically(
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir());
         if let Some(folder) = folder {
             let found = format!("no folder `{}`", folder.display());
-            return Diagnostic::new(Kind::Io, found, "a folder that is there, for what is written").in_file(path);
+            return Diagnostic::new(Kind::Io, found, "a folder that is there, for what is written")
+                .in_file(path);
         }
         Diagnostic::new(Kind::Io, format!("\"{error}\" while writing"), "a file that can be written")
             .in_file(path)

@@ -116,7 +116,8 @@ fn like_it(error: Diagnostic, path: &Path) -> Diagnostic {
     let ending = |path: &Path| path.extension().map(|ending| ending.to_ascii_lowercase());
     let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let near = |found: &PathBuf| found.is_file() && ending(found) == ending(path);
-    let mut near: Vec<PathBuf> = entries.take(MOST_LOOKED_AT).flatten().map(|entry| entry.path()).filter(near).collect();
+    let mut near: Vec<PathBuf> =
+        entries.take(MOST_LOOKED_AT).flatten().map(|entry| entry.path()).filter(near).collect();
     near.sort();
     let stems: Vec<String> = near.iter().filter_map(|path| stem(path)).collect();
     let stems: Vec<&str> = stems.iter().map(String::as_str).collect();
@@ -139,8 +140,9 @@ pub(crate) fn check_length(bytes: &[u8], limit_bytes: u64) -> Result<()> {
     if bytes.len() as u64 <= limit_bytes {
         return Ok(());
     }
-    let found = format!("more than {limit_bytes} bytes");
-    Err(Diagnostic::new(Kind::Limit, found, format!("at most {limit_bytes} bytes")))
+    let limit = format!("{} MiB", limit_bytes >> 20);
+    let found = format!("more than {limit}");
+    Err(Diagnostic::new(Kind::Limit, found, format!("at most {limit}")))
 }
 
 /// The bytes of a regular file of at most `limit_bytes`, even if it grows while it is read.

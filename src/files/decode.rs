@@ -23,7 +23,8 @@ pub(crate) fn decode(bytes: &[u8]) -> String {
 
 /// Whether they are UTF-16.
 pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
-    [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|mark| bytes.starts_with(mark)) || utf16_without_mark(bytes).is_some()
+    [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|mark| bytes.starts_with(mark))
+        || utf16_without_mark(bytes).is_some()
 }
 
 type Unit = fn([u8; 2]) -> u16;

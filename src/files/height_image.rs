@@ -4,6 +4,7 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
 
+use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::HeightImage;
 
@@ -19,7 +20,11 @@ const LUMA: [f32; 3] = [0.21264784, 0.7151792, 0.07217304];
 /// Bytes that are no PNG, or one of more than 2^26 pixels. The diagnostic does not name the file.
 pub fn parse(bytes: &[u8], [low_m, high_m]: [f64; 2]) -> Result<HeightImage> {
     let no_png = |e: DecodingError| {
-        Diagnostic::new(Kind::Syntax, format!("no readable PNG: {}", e.to_string().trim_end_matches('.')), "a PNG of 8 or 16 bits")
+        Diagnostic::new(
+            Kind::Syntax,
+            format!("no readable PNG: {}", e.to_string().trim_end_matches('.')),
+            "a PNG of 8 or 16 bits",
+        )
     };
     let mut decoder =
         Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 16 * MOST_PIXELS as usize });
@@ -27,7 +32,7 @@ pub fn parse(bytes: &[u8], [low_m, high_m]: [f64; 2]) -> Result<HeightImage> {
     let (width, height) = decoder.read_header_info().map_err(no_png)?.size();
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
         let found = format!("{width} x {height} pixels");
-        return Err(Diagnostic::new(Kind::Limit, found, format!("at most {MOST_PIXELS} pixels")));
+        return Err(Diagnostic::new(Kind::Limit, found, format!("at most {} pixels", limit(MOST_PIXELS))));
     }
     // Palettes become colours, and samples of 1, 2 or 4 bits bytes.
     decoder.set_transformations(Transformations::EXPAND);

@@ -63,17 +63,22 @@ impl FileKind {
 }
 
 const TO_OBJ: Use = Use::None("export the mesh as OBJ, or convert the file (Blender, MeshLab)");
-const BODIES: Use = Use::None("make a mesh of it and export that as OBJ (FreeCAD, or the program that wrote it)");
+const BODIES: Use =
+    Use::None("make a mesh of it and export that as OBJ (FreeCAD, or the program that wrote it)");
 const TO_PNG: Use = Use::None("convert the picture to a PNG of 8 or 16 bits (GIMP, ImageMagick)");
 const TO_IES: Use = Use::None("it is not read yet: convert the file to IES LM-63, or ask the maker for that");
-const TO_TABLE: Use = Use::None("convert the table: docs/SCATTERING.md shows a text that a spreadsheet can write");
+const TO_TABLE: Use =
+    Use::None("convert the table: docs/SCATTERING.md shows a text that a spreadsheet can write");
 const UNPACK: Use = Use::None("unpack it, and give the file that is in it");
 const DOCUMENT: Use = Use::None("ask for the data itself: no tables are read out of documents");
-const PAGE: Use = Use::None("a web page was saved in place of the file: open it in a browser and download the file it links to");
+const PAGE: Use = Use::None(
+    "a web page was saved in place of the file: open it in a browser and download the file it links to",
+);
 const AS_TEXT: Use = Use::None("save it as plain text");
 const FOREIGN: Use = Use::None("docs/SCENE.md has the format of scenes, and scenes/ examples");
-const RESULT: Use =
-    Use::None("viewers of EXR open it (tev, DJV, OpenCV); as heights of a surface, convert it to a PNG of 16 bits");
+const RESULT: Use = Use::None(
+    "viewers of EXR open it (tev, DJV, OpenCV); as heights of a surface, convert it to a PNG of 16 bits",
+);
 
 /// How files of one kind begin.
 const BEGINNINGS: [(&[u8], &str, Use); 27] = [
@@ -116,7 +121,8 @@ const HEAD: usize = 64 << 10;
 pub(crate) const SCATTERING: &str = "caustix-scattering";
 
 /// Words that the scattering tables of Zemax begin with.
-pub(crate) const ZEMAX: [&str; 5] = ["Source", "Symmetry", "SpectralContent", "ScatterType", "SampleRotation"];
+pub(crate) const ZEMAX: [&str; 5] =
+    ["Source", "Symmetry", "SpectralContent", "ScatterType", "SampleRotation"];
 
 /// What these bytes are, as far as they can be told.
 pub(crate) fn kind_of(bytes: &[u8]) -> Option<FileKind> {
@@ -251,7 +257,9 @@ pub(crate) fn instead(bytes: &[u8], read: Use, required: &str, name: &str) -> Op
     match kind {
         Some(kind) if kind.good_for != read => refused(kind.what, kind.advice(name)),
         // Photometric files are read in any encoding.
-        _ if read != Use::Photometric && is_utf16(bytes) => refused("a text in UTF-16", "save it as UTF-8".into()),
+        _ if read != Use::Photometric && is_utf16(bytes) => {
+            refused("a text in UTF-16", "save it as UTF-8".into())
+        }
         _ => None,
     }
 }

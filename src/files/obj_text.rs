@@ -4,6 +4,7 @@
 //! Only `v`, `vn` and `f` carry geometry. Their lines go on to tobj as they stand, without comments and colours; groups, materials,
 //! texture coordinates and file references do not.
 
+use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::MAX_COORDINATE_M;
 
@@ -44,9 +45,12 @@ impl Line<'_> {
         let number = |word: &&str| match word.parse::<f64>() {
             Ok(x) if x.abs() <= MAX_COORDINATE_M => Ok(x),
             Ok(_) => Err(self.refuse(Kind::Range, word, quote(word), "a finite number up to 1e30")),
-            Err(_) if word.contains(',') => {
-                Err(self.refuse(Kind::Syntax, word, quote(word), "a number with a decimal point, not a comma"))
-            }
+            Err(_) if word.contains(',') => Err(self.refuse(
+                Kind::Syntax,
+                word,
+                quote(word),
+                "a number with a decimal point, not a comma",
+            )),
             Err(_) => Err(self.refuse(Kind::Syntax, word, quote(word), "a number")),
         };
         words.iter().map(number).collect()
@@ -75,7 +79,7 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
         let words: Vec<&str> = words.collect();
         elements += words.len();
         if elements > MAX_OBJ_ELEMENTS {
-            let required = format!("at most {MAX_OBJ_ELEMENTS}");
+            let required = format!("at most {}", limit(MAX_OBJ_ELEMENTS as u64));
             return Err(Diagnostic::new(Kind::Limit, "too many elements", required).at(line.number, 1));
         }
         match keyword {
@@ -106,7 +110,11 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
         }
     }
     if checked.face_lines.is_empty() {
-        return Err(Diagnostic::new(Kind::Missing, "no face", "at least one line `f 1 2 3`: points and lines alone are no surface"));
+        return Err(Diagnostic::new(
+            Kind::Missing,
+            "no face",
+            "at least one line `f 1 2 3`: points and lines alone are no surface",
+        ));
     }
     Ok(checked)
 }

@@ -136,9 +136,14 @@ mod tests {
     #[test]
     fn words_of_other_programs_are_translated_where_there_is_such_a_thing() {
         let meant = |word: &str, known: &[&str]| {
-            hinted(Diagnostic::new(crate::error::Kind::Unknown, "", ""), word, known, '"').advice().map(str::to_owned)
+            hinted(Diagnostic::new(crate::error::Kind::Unknown, "", ""), word, known, '"')
+                .advice()
+                .map(str::to_owned)
         };
-        assert_eq!(meant("Glass", &["mirror", "dielectric"]).as_deref(), Some("did you mean \"dielectric\"?"));
+        assert_eq!(
+            meant("Glass", &["mirror", "dielectric"]).as_deref(),
+            Some("did you mean \"dielectric\"?")
+        );
         assert_eq!(meant("origin", &["edge_u", "corner"]).as_deref(), Some("did you mean \"corner\"?"));
         assert_eq!(meant("glass", &["mirror"]), None);
     }

@@ -53,6 +53,7 @@ pub use transform::{SCALE, Transform};
 pub use whereabouts::{Body, Met, Side, Touch, Whereabouts};
 
 use crate::error::invalid::Interval;
+use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind, Result};
 use bvh::Bounds;
 use wide::{Normalisation, WideTree};
@@ -331,8 +332,8 @@ fn describe(surfaces: &[Surface]) -> Result<Vec<Info>> {
         if first > MAX_PRIMITIVES {
             return Err(Diagnostic::new(
                 Kind::Limit,
-                format!("more than {MAX_PRIMITIVES} triangles and shapes"),
-                format!("at most {MAX_PRIMITIVES} in a scene"),
+                format!("more than {} triangles and shapes", limit(MAX_PRIMITIVES as u64)),
+                format!("at most {} in a scene", limit(MAX_PRIMITIVES as u64)),
             ));
         }
     }

@@ -50,6 +50,15 @@ pub fn rounded(value: f64, significant: usize) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
+/// A time in words.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s >= 5400.0 => format!("{:.1} hours", s / 3600.0),
+        s if s >= 90.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{s:.0} s"),
+    }
+}
+
 /// A measured value with three significant digits, whole numbers from 1000 on; "-" for NaN.
 pub fn three_digits(value: f64) -> String {
     let size = value.abs();

@@ -22,6 +22,7 @@
 //! stored unfolded, over a full turn. Between nodes f cos(theta_o) is bilinear in polar angle and azimuth, it is
 //! zero beyond the last polar angle, and below the horizon of m a node counts as zero whatever the file says.
 
+use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind, Result};
 
 /// Values a table may have in all its lobes: 256 MiB.
@@ -144,7 +145,7 @@ impl Lobe {
             Diagnostic::new(
                 Kind::Limit,
                 format!("{counts} values (channels x phi_i x theta_i x polar x azimuth)"),
-                format!("at most {MAX_VALUES} in all"),
+                format!("at most {} in all", limit(MAX_VALUES as u64)),
             )
         })
     }
@@ -196,8 +197,8 @@ impl ScatterTable {
         if lobes.iter().map(|l| l.values.len()).sum::<usize>() > MAX_VALUES {
             return Err(Diagnostic::new(
                 Kind::Limit,
-                format!("{} lobes with more than {MAX_VALUES} values in all", lobes.len()),
-                format!("at most {MAX_VALUES}"),
+                format!("{} lobes with more than {} values in all", lobes.len(), limit(MAX_VALUES as u64)),
+                format!("at most {}", limit(MAX_VALUES as u64)),
             ));
         }
         for (i, one) in lobes.iter().enumerate() {

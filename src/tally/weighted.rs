@@ -6,6 +6,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::Geometry;
 use crate::scene::receiver::Receiver;
@@ -66,7 +67,7 @@ impl<'s> WeightedReceivers<'s> {
             return Err(Diagnostic::new(
                 Kind::Limit,
                 format!("{cells} cells of receivers for weighted photons"),
-                format!("at most {MOST_WEIGHTED_CELLS}"),
+                format!("at most {}", limit(MOST_WEIGHTED_CELLS as u64)),
             ));
         }
         let sums = (0..cells).map(|_| std::array::from_fn(|_| AtomicU64::new(0))).collect();

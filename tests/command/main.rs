@@ -11,6 +11,7 @@ mod contract;
 #[cfg(unix)]
 mod interrupts;
 mod maps_open;
+mod misuse;
 mod outputs;
 mod picture;
 mod result_set;
@@ -18,3 +19,4 @@ mod result_set;
 mod result_set_cut;
 mod results_kept;
 mod sample;
+mod shell;

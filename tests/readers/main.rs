@@ -14,6 +14,7 @@ mod make_ies;
 mod broken_scene;
 mod damage;
 mod mistakes;
+mod mistakes_told;
 mod mistakes_warned;
 mod photometry_cases;
 mod photometry_damaged;

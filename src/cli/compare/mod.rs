@@ -62,7 +62,7 @@ pub struct CompareArgs {
 
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &CompareArgs) -> Done {
-    let (scene, _) = load(args.scene.as_deref())?;
+    let (scene, _) = load(args.scene.as_deref(), args.quiet)?;
     warn(&scene.warnings);
     if scene.compared_reflections.is_some() { room::run(args, &scene) } else { study::run(args, &scene) }
 }

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use indicatif::ProgressBar;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::CompareArgs;
-use crate::cli::progress::{catch_interrupts, progress_bar};
+use crate::cli::progress::{Progress, catch_interrupts};
 use crate::cli::{exit, print, results, say};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::clear_temporaries;
@@ -35,7 +34,7 @@ pub fn scene_key(scene: &Scene) -> String {
 pub struct Kept {
     folder: Folder,
     pub parts: Parts,
-    pub progress: ProgressBar,
+    pub progress: Progress,
 }
 
 impl Kept {
@@ -49,7 +48,7 @@ impl Kept {
         catch_interrupts();
         let parts = Parts::new(args.output.join("parts"));
         clear_temporaries(parts.directory());
-        Ok(Self { folder, parts, progress: progress_bar(args.quiet, photons) })
+        Ok(Self { folder, parts, progress: Progress::new(args.quiet, "starting", photons) })
     }
 
     /// A part that is there and whole; one that is damaged is told, and made again.

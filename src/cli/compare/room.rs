@@ -25,14 +25,14 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     let pool = thread_pool(args.threads)?;
     let mut measurements = Vec::new();
     for task in options.tasks() {
-        kept.progress.set_message(task.to_string());
+        kept.progress.phase(task.to_string());
         match pool.install(|| measurement(scene, &task, &kept)) {
             Ok(measurement) => measurements.extend(measurement),
             Err(e) if e.kind() == Kind::Interrupted => break,
             Err(e) => return Err(e.into()),
         }
     }
-    kept.progress.finish_and_clear();
+    kept.progress.clear();
     if INTERRUPTED.load(Ordering::Relaxed) {
         let (done, all) = (measurements.len(), options.tasks().len());
         return Ok(kept.interrupted(&format!("{done} of {all} measurements are done")));

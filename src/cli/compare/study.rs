@@ -53,7 +53,7 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     let pool = thread_pool(args.threads)?;
     let job = Job { scene, asked, kept };
     let study = pool.install(|| job.study(args))?;
-    job.kept.progress.finish_and_clear();
+    job.kept.progress.clear();
     let mut is_whole = true;
     if let Some(study) = &study {
         let table = Table::new(study);
@@ -217,7 +217,7 @@ impl Job<'_> {
         let cells = self.asked.grids.cell_count();
         let mut replicates = Vec::new();
         for replicate in 0..REPLICATES {
-            self.kept.progress.set_message(format!("reference {} of {REPLICATES}", replicate + 1));
+            self.kept.progress.phase(format!("reference {} of {REPLICATES}", replicate + 1));
             let part = format!("{key}\nreplicate {replicate}");
             let found = self.kept.found("reference", &part);
             if let Some(counts) = found.and_then(|bytes| from_bytes(&bytes, cells)) {
@@ -245,7 +245,7 @@ impl Job<'_> {
                 if !asked.seeds_of(*algorithm).contains(seed) {
                     continue;
                 }
-                self.kept.progress.set_message(format!(
+                self.kept.progress.phase(format!(
                     "{}, seed {} of {}",
                     algorithm.name(),
                     k + 1,

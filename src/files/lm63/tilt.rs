@@ -2,8 +2,8 @@
 
 use super::TiltFile;
 use super::body::{Reader, values};
-use crate::files::decode::decode;
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::decode::decode;
 use crate::files::excerpt::quoted;
 use crate::photometry::{Tilt, TiltTable};
 

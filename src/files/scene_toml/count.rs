@@ -33,9 +33,12 @@ pub fn parse_count(text: &str) -> Result<u64> {
 /// The count that people mean by `4M`, or by `1,000,000` and `1 000 000`.
 fn meant(text: &str) -> Option<String> {
     const LETTERS: [(char, u32); 6] = [('k', 3), ('K', 3), ('M', 6), ('m', 6), ('G', 9), ('T', 12)];
-    let suffixed = LETTERS.iter().find_map(|(letter, zeros)| Some((text.strip_suffix(*letter)?.trim_end(), zeros)));
+    let suffixed =
+        LETTERS.iter().find_map(|(letter, zeros)| Some((text.strip_suffix(*letter)?.trim_end(), zeros)));
     let meant = match suffixed {
-        Some((number, zeros)) if number.ends_with(|c: char| c.is_ascii_digit()) => format!("{number}e{zeros}"),
+        Some((number, zeros)) if number.ends_with(|c: char| c.is_ascii_digit()) => {
+            format!("{number}e{zeros}")
+        }
         Some(_) => return None,
         None => {
             let groups: Vec<&str> = text.split([',', ' ', '\'', '\u{a0}', '\u{202f}']).collect();

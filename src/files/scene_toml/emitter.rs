@@ -6,13 +6,13 @@ use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::DIRECTION;
 use super::part::EmitterPart;
-use crate::files::suggest;
 use super::table::{Placed, Table};
 use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emitter, FLUX, Isotropic, Panel, Photometric,
 };
 use crate::error::{Diagnostic, Kind};
+use crate::files::suggest;
 use crate::geometry::{COORDINATE, LENGTH};
 
 /// What makes an emitter of its table, its position (m) and its flux (lm), where these are given and good.

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::loader::{Loader, Make};
 use super::table::{Placed, Table, shown};
+use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind};
 use crate::files::height_image;
 use crate::files::kinds::{Use, instead};
@@ -57,8 +58,12 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
                 // A picture of one grey packs a thousandfold: a small file must not ask for gigabytes of triangles.
                 if u64::from(cells[0]) * u64::from(cells[1]) > MOST_CELLS {
                     let found = format!("a heightfield with a vertex for each of {columns} x {rows} pixels");
-                    return Err(Diagnostic::new(Kind::Limit, found, format!("at most {MOST_CELLS} cells"))
-                        .hint("give cells = [along x, along y]: heights between pixels are interpolated"));
+                    return Err(Diagnostic::new(
+                        Kind::Limit,
+                        found,
+                        format!("at most {} cells", limit(MOST_CELLS)),
+                    )
+                    .hint("give cells = [along x, along y]: heights between pixels are interpolated"));
                 }
                 let field = Heightfield::new(origin, size, cells, Formula::Image(image))?;
                 let between =

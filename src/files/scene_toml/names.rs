@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::document::Document;
-use crate::files::suggest;
 use super::table::{Placed, Table, shown};
 use crate::error::{Diagnostic, Kind, Place};
+use crate::files::suggest;
 
 /// Longest name, in characters.
 const LONGEST_NAME: usize = 100;

@@ -29,7 +29,9 @@ impl<'t> Table<'t, '_> {
     fn number_in(&self, label: &str, value: Value<'t>, interval: &Interval) -> Option<f64> {
         match number_of(value.get_ref()) {
             Some(number) if interval.contains(number) => Some(number),
-            Some(percent) if (interval.low, interval.high) == (0.0, 1.0) && (1.0..=100.0).contains(&percent) => {
+            Some(percent)
+                if (interval.low, interval.high) == (0.0, 1.0) && (1.0..=100.0).contains(&percent) =>
+            {
                 let hint = format!("{percent} % is {}", percent / 100.0);
                 self.advised(label, value, Kind::Range, interval.words, &hint)
             }
@@ -131,9 +133,13 @@ impl<'t> Table<'t, '_> {
     fn integer_in(&self, label: &str, value: Value<'t>, low: u64, high: u64, words: &str) -> Option<u64> {
         let Some(integer) = value.get_ref().as_integer() else {
             return match number_of(value.get_ref()).filter(|x| x.fract() == 0.0 && x.abs() < 1e15) {
-                Some(whole) => {
-                    self.advised(label, value, Kind::Syntax, words, &format!("write it without a point: {whole}"))
-                }
+                Some(whole) => self.advised(
+                    label,
+                    value,
+                    Kind::Syntax,
+                    words,
+                    &format!("write it without a point: {whole}"),
+                ),
                 None => self.no_number(label, value, words),
             };
         };

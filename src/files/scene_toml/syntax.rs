@@ -95,7 +95,9 @@ fn rule_of_value(value: &str) -> &'static str {
         let is_apart = |item: &str| item.split_whitespace().count() > 1;
         return match list.ends_with(']') {
             false => "a list with a bracket ] at its end",
-            true if items.into_iter().any(is_apart) => "a comma between the values of a list, as in [0.0, 0.0, 1.0]",
+            true if items.into_iter().any(is_apart) => {
+                "a comma between the values of a list, as in [0.0, 0.0, 1.0]"
+            }
             true => REQUIRED,
         };
     }

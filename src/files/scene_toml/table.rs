@@ -11,9 +11,9 @@ use toml::de::{DeTable, DeValue};
 
 use super::document::Document;
 pub(super) use super::document::Placed;
-use crate::files::suggest;
 use crate::error::invalid::Invalid;
 use crate::error::{Diagnostic, Kind, Place};
+use crate::files::suggest;
 
 pub(super) type Value<'t> = &'t Spanned<DeValue<'t>>;
 

@@ -51,7 +51,8 @@ fn opening(study: &Study) -> String {
         (plain(&study.scene_name), printable(&study.command), one_line(&study.scene_sha256));
     let receivers = names(study.receivers.iter().map(|r| plain(r)), usize::MAX);
     let grids = names(study.grids.iter().map(u32::to_string), usize::MAX);
-    let (asked, ladder) = (grouped(study.asked_photons), names(study.ladder.iter().map(photons_in_short), usize::MAX));
+    let (asked, ladder) =
+        (grouped(study.asked_photons), names(study.ladder.iter().map(photons_in_short), usize::MAX));
     let (seeds, threads, version) = (seeds(study), study.threads, plain(&study.caustix_version));
     let (reference, own_errors) = (plain(&reference(study)), own_errors(study));
     let mut out = format!(
