@@ -200,7 +200,7 @@ impl Check {
             let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);
             let photons = match c.photon_memory_mb {
                 0.0 => String::new(),
-                mb => format!(", at most {mb:.0} MB of photons at a time"),
+                mb => format!(", at most {} MB of photons at a time", grouped(mb.round() as u64)),
             };
             out += &format!(
                 "camera     {columns} x {rows} pixels of {} samples, {method}{photons}\n",

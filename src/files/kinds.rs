@@ -159,7 +159,7 @@ fn of_text(text: &str) -> Option<(&'static str, Use)> {
     let is_comment = |line: &&str| line.trim_start().starts_with('#');
     let mut words = trimmed.lines().skip_while(is_comment).flat_map(str::split_whitespace);
     if trimmed.is_empty() {
-        return Some(("an empty file", Use::None("was it saved, and copied whole?")));
+        return Some((EMPTY, Use::None("was it saved, and copied whole?")));
     }
     let first = words.next()?;
     if trimmed.starts_with('<') {
@@ -205,6 +205,11 @@ fn of_text(text: &str) -> Option<(&'static str, Use)> {
     is_obj(text).then_some(("a mesh (OBJ)", Use::Mesh))
 }
 
+const EMPTY: &str = "an empty file";
+
+/// Markup of which no more is known: scattering tables have their own to say of it.
+const XML: &str = "an XML file";
+
 /// What a text in angle brackets is.
 fn of_markup(text: &str) -> (&'static str, Use) {
     let lower = text.to_lowercase();
@@ -218,7 +223,7 @@ fn of_markup(text: &str) -> (&'static str, Use) {
         () if has("<scene") => ("a scene of another program (XML)", FOREIGN),
         // Other photometric files in XML (UNI 11733, TM-33 with another root).
         () if has("luminaire") || has("photometr") || has("candela") => ("a photometric file in XML", TO_IES),
-        () => ("an XML file", FOREIGN),
+        () => (XML, FOREIGN),
     }
 }
 
@@ -240,9 +245,14 @@ fn is_eulumdat(text: &str) -> bool {
 /// Whether a text begins with lines of an OBJ file, a vertex among them.
 fn is_obj(text: &str) -> bool {
     const KEYWORDS: [&str; 9] = ["v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"];
-    let keywords = text.lines().filter_map(|line| line.split('#').next()?.split_whitespace().next());
-    let first: Vec<&str> = keywords.take(20).collect();
-    first.contains(&"v") && first.iter().all(|keyword| KEYWORDS.contains(keyword))
+    let words =
+        |line: &str| line.split('#').next().map(|line| line.split_whitespace().map(str::to_owned).collect());
+    let lines = text.lines().filter_map(words).filter(|words: &Vec<String>| !words.is_empty());
+    let first: Vec<Vec<String>> = lines.take(20).collect();
+    let is_vertex = |words: &Vec<String>| {
+        words[0] == "v" && words.iter().filter(|x| x.parse::<f64>().is_ok()).count() > 2
+    };
+    first.iter().any(is_vertex) && first.iter().all(|words| KEYWORDS.contains(&words[0].as_str()))
 }
 
 /// The error that a file is of another kind than the one which is read here; `None` where it is of this kind, or of none
@@ -252,9 +262,11 @@ fn is_obj(text: &str) -> bool {
 pub(crate) fn instead(bytes: &[u8], read: Use, required: &str, name: &str) -> Option<Diagnostic> {
     let kind = kind_of(bytes);
     let refused = |found: &str, advice: String| {
-        Some(Diagnostic::new(Kind::Unavailable, found, required).hint(advice).at(1, 1).in_file(name))
+        let class = if found == EMPTY { Kind::Missing } else { Kind::Unavailable };
+        Some(Diagnostic::new(class, found, required).hint(advice).at(1, 1).in_file(name))
     };
-    match kind {
+    let is_unknown = |kind: &FileKind| kind.what == XML && read == Use::Scattering;
+    match kind.filter(|kind| !is_unknown(kind)) {
         Some(kind) if kind.good_for != read => refused(kind.what, kind.advice(name)),
         // Photometric files are read in any encoding.
         _ if read != Use::Photometric && is_utf16(bytes) => {

@@ -235,13 +235,15 @@ impl SceneBuilder {
 
     /// An error for each name of emitters or receivers that is another's. (Surfaces' names are the geometry's to check.)
     fn names_used_twice(&self) -> Vec<Diagnostic> {
-        let emitters = self.emitters.iter().map(|part| ("emitter", part.name.clone(), &part.place));
+        let emitters =
+            self.emitters.iter().map(|part| ("emitter", part.name.clone(), part.name.as_str(), &part.place));
         // Cases are not told apart: some file systems don't, and these names become file names.
-        let receivers = self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_uppercase(), place));
+        let receivers =
+            self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_uppercase(), r.name(), place));
         let mut known = BTreeSet::new();
-        let again = emitters.chain(receivers).filter(|(what, name, _)| !known.insert((*what, name.clone())));
+        let again = emitters.chain(receivers).filter(|(what, key, ..)| !known.insert((*what, key.clone())));
         again
-            .map(|(what, name, place)| {
+            .map(|(what, _, name, place)| {
                 let found = format!("the {what} name `{name}` a second time");
                 let required = format!("a name of its own for every {what}");
                 Diagnostic::new(Kind::Range, found, required).placed(*place)

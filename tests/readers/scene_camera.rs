@@ -174,7 +174,7 @@ fn check_tells_of_the_camera() {
     };
     let with = format!("{SCENE}[camera]\n{REQUIRED}");
     let text = check(&with, &[]);
-    let line = "camera     320 x 200 pixels of 16 samples, map, at most 2147 MB of photons at a time\n";
+    let line = "camera     320 x 200 pixels of 16 samples, map, at most 2 147 MB of photons at a time\n";
     assert!(text.contains(line), "{text}");
     let json: serde_json::Value = serde_json::from_str(&check(&with, &["--json"])).unwrap();
     assert_eq!(json["camera"]["pixels"], serde_json::json!([320, 200]));
