@@ -31,7 +31,7 @@ pub(super) fn catch_interrupts() {
     }
 }
 
-/// What a run is at, on a terminal; nothing elsewhere. Phases follow one another; those with a share have a bar.
+/// What a run is at, on a terminal; nothing elsewhere. Phases follow one another, and some have a bar.
 pub(super) struct Progress {
     bar: ProgressBar,
     state: Arc<State>,

@@ -1,4 +1,4 @@
-//! `caustix completions SHELL` and `caustix man`: what a shell and `man` want to know, made from the arguments themselves.
+//! `caustix completions SHELL` and `caustix man`, made from the arguments themselves.
 
 use std::io;
 

@@ -1,7 +1,7 @@
 //! Lists and counts as messages and summaries tell them.
 //!
-//! Counts of what was done or found are grouped by spaces (`4 194 304 photons`); numbers that a user may type stand as they are
-//! typed (`from 1 to 65536`, `2^22`).
+//! Counts of what was done or found are grouped by spaces (`4 194 304 photons`). Numbers that a user may type stand
+//! as they are typed (`from 1 to 65536`, `2^22`). Measured values have significant digits and no groups.
 
 use std::fmt::Display;
 

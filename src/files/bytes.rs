@@ -105,8 +105,8 @@ fn open(path: &Path, limit_bytes: u64) -> Result<File> {
     File::open(path).map_err(|e| io(format!("the file `{shown}`, which cannot be opened: {e}")))
 }
 
-/// The error that a file is not there, with the one of its folder that was probably meant: of the same ending, and a name
-/// near its own.
+/// The error that a file is not there, with the one of its folder that was probably meant: it has the same ending and
+/// a name near its own.
 fn like_it(error: Diagnostic, path: &Path) -> Diagnostic {
     const MOST_LOOKED_AT: usize = 1000;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

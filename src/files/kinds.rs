@@ -1,5 +1,5 @@
-//! What a file is, by what stands in it and not by its name: for messages about a file that was given where one of
-//! another kind is read.
+//! What a file is, by its content and not its name: for messages about a file that was given where one of another
+//! kind is read.
 
 use crate::error::{Diagnostic, Kind};
 use crate::files::decode::{decode, is_utf16};
@@ -227,7 +227,7 @@ fn of_markup(text: &str) -> (&'static str, Use) {
     }
 }
 
-/// Whether lines 2 to 7 are those of an EULUMDAT file: kind, symmetry, planes and their distance, angles and theirs.
+/// Whether lines 2 to 7 are those of an EULUMDAT file: kind, symmetry, planes, their distance, angles and theirs.
 fn is_eulumdat(text: &str) -> bool {
     let lines = text.split(if text.contains('\n') { '\n' } else { '\r' });
     let numbers: Vec<f64> =
@@ -255,8 +255,8 @@ fn is_obj(text: &str) -> bool {
     first.iter().any(is_vertex) && first.iter().all(|words| KEYWORDS.contains(&words[0].as_str()))
 }
 
-/// The error that a file is of another kind than the one which is read here; `None` where it is of this kind, or of none
-/// that is known: then what the reader says of it is to be told.
+/// The error that a file is of another kind than the one which is read here. `None` where it is of this kind or of
+/// none that is known: then what the reader says of it is to be told.
 ///
 /// `required` is what is read, and `name` what the file is called.
 pub(crate) fn instead(bytes: &[u8], read: Use, required: &str, name: &str) -> Option<Diagnostic> {

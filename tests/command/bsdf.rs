@@ -199,7 +199,7 @@ fn mistakes_exit_1_with_their_place_and_usage_exits_2() {
     for (line, code, parts) in [
         ("bsdf bad.scatter", 1, &["bad.scatter:12:6: found ", "required: "][..]),
         ("bsdf x.bsdf", 1, &["x.bsdf:1:1: found a Speos file"]),
-        ("bsdf empty", 1, &["empty:1:1: found a file without a word"]),
+        ("bsdf empty", 1, &["empty:1:1: found an empty file"]),
         ("bsdf nowhere.bsdf", 1, &["nowhere.bsdf"]),
         ("bsdf", 2, &["FILE"]),
         ("bsdf sheet.scatter --plott a.svg", 2, &["--plot"]),

@@ -24,9 +24,9 @@ fn check_probes_with_photons_and_tells_what_a_run_would() {
     let s = Stranger::with(&[("right.toml", &with_pane(-1.0)), ("wrong.toml", &with_pane(1.0))]);
     let (code, out, err) = s.types("check right.toml --strict");
     assert_eq!((code, err.as_str()), (0, ""), "{out}");
-    assert!(out.ends_with("probe      4096 photons: nothing to warn of\n"), "{out}");
+    assert!(out.ends_with("probe      4 096 photons: nothing to warn of\n"), "{out}");
     let probed = [
-        "warning (found by a probe of 4096 photons): untrusted: ",
+        "warning (found by a probe of 4 096 photons): untrusted: ",
         "\"lower\"",
         "exchange edge_u and edge_v",
     ];

@@ -145,7 +145,7 @@ fn several_mistakes_are_counted_in_the_first_line() {
             "{err}"
         );
         assert!(
-            lines[1].starts_with("error: two.toml:5:11: ") && lines[2].starts_with("error: two.toml:18:9: "),
+            lines[1].starts_with("error: two.toml:5:11: ") && lines[2].starts_with("error: two.toml:17:9: "),
             "{err}"
         );
     }

@@ -43,7 +43,7 @@ fn a_report_vouches_for_every_file_and_another_is_found() {
     s.is_told(
         "render seen.toml -o out --photons 2^12 --map out/photons.map",
         0,
-        &["out also holds files", ": plate.csv, plate.png\n"],
+        &["out also holds files", ": plate.csv and plate.png\n"],
     );
     assert!(whole(&out, REPORT).contains("camera.exr") && out.join("photons.map").is_file());
 }

@@ -222,7 +222,7 @@ fn as_list<const N: usize>(value: &DeValue<'_>) -> Option<String> {
         }
         None => vec![value.as_integer()?.as_str().parse().ok()?; 2],
     };
-    (N == 2 && pair.len() == 2).then(|| format!("[{}, {}]", pair[0], pair[1]))
+    (N == 2 && pair.len() == 2 && !pair.contains(&0)).then(|| format!("[{}, {}]", pair[0], pair[1]))
 }
 
 /// A TOML number as f64; integers are welcome where a number is.

@@ -34,8 +34,8 @@ pub(super) fn read(
         _ => None,
     };
     if let Some(name) = &name {
-        // Cases are not told apart: some file systems don't, and the names become file names. Upper case, since it is the
-        // one that tells no ss from a sharp s and no final sigma from another.
+        // Cases are not told apart: some file systems don't, and the names become file names. Upper case takes a sharp
+        // s for ss and a final sigma for any other, as those systems do.
         names.insert(table.document(), name, &name.value.to_uppercase(), index);
     }
     let cells = table.cells("cells", MOST_CELLS, CELLS_REQUIRED);

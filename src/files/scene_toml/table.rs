@@ -26,8 +26,8 @@ pub(super) struct Table<'t, 'd> {
     /// Where its header stands.
     place: Place,
     known: Vec<&'static str>,
-    /// Keys that are missing, with what was found and what is required: told when the table ends, but for those that an
-    /// unknown key was meant to be.
+    /// Keys that are missing, with what was found and what is required. They are told when the table ends, but for
+    /// those that an unknown key was meant to be.
     missing: RefCell<Vec<(&'static str, String, String)>>,
     /// Known keys that unknown ones were meant to be.
     meant: Vec<&'static str>,
