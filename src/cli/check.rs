@@ -15,6 +15,7 @@ use crate::report::numbers::digits;
 use crate::run::dark::is_long;
 use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
+use crate::scene::receiver::DividedBy;
 use crate::scene::{Scene, requires::requirements};
 
 use super::render::{say_found, strictly};
@@ -101,7 +102,14 @@ struct EmitterCheck {
 struct ReceiverCheck {
     name: String,
     cells: usize,
+    /// Whether a run's pilot will choose others.
+    #[serde(skip_serializing_if = "is_not")]
+    cells_by_pilot: bool,
     area_m2: f64,
+}
+
+fn is_not(flag: &bool) -> bool {
+    !flag
 }
 
 #[derive(Debug, Serialize)]
@@ -145,6 +153,7 @@ impl Check {
         let receivers = scene.receivers.iter().map(|r| ReceiverCheck {
             name: r.name.clone(),
             cells: r.cells.len(),
+            cells_by_pilot: r.divided_by == DividedBy::Default,
             area_m2: r.total_area_m2(),
         });
         let camera = scene.camera.as_ref().map(|c| CameraCheck {
@@ -197,7 +206,9 @@ impl Check {
             out += &format!("surface    {}: {edges}, {} m2\n", s.name, digits(s.area_m2));
         }
         for r in &self.receivers {
-            out += &format!("receiver   {}: {} cells, {} m2\n", r.name, r.cells, digits(r.area_m2));
+            let cells =
+                if r.cells_by_pilot { "cells by a pilot run".into() } else { format!("{} cells", r.cells) };
+            out += &format!("receiver   {}: {cells}, {} m2\n", r.name, digits(r.area_m2));
         }
         if let Some(c) = &self.camera {
             let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);
