@@ -127,7 +127,7 @@ mod tests {
     fn sides_that_are_no_lengths_have_parts_of_one() {
         let [along, up] = Axes::Metres([0.0, f64::NAN]).marks([700, 700]);
         assert_eq!((along.name, up.name), ("u", "v"));
-        assert_eq!(along.marks.last().unwrap(), &(1.0, "1".to_owned()));
+        assert_eq!(along.marks.last().unwrap(), &(1.0, "1.0".to_owned()));
         let [along, _] = Axes::Metres([4.0, 2.0]).marks([700, 350]);
         assert_eq!((along.name, along.marks[1].0), ("u [m]", 0.25));
         assert_eq!(along.marks[1].1, "1");
