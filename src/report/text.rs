@@ -3,7 +3,7 @@
 use std::fmt::{Result, Write};
 
 use crate::estimate::extremes::Interval;
-use crate::run::pilot::CELL_ERROR;
+use crate::run::pilot::{CELL_ERROR, is_at_bound};
 use crate::run::{Estimate, Outcome, StoppedBy};
 use crate::scene::Scene;
 
@@ -73,10 +73,13 @@ pub fn summary(
 fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &[String]) -> Result {
     writeln!(out, "\nreceiver \"{name}\": {} cells, {} m2", grouped(s.cells as u64), digits(s.area_m2))?;
     if let Some([nu, nv]) = s.cells_by_pilot {
-        let error = rounded(100.0 * CELL_ERROR, 2);
+        let aim = match is_at_bound([nu, nv]) {
+            Some(bound) => format!("as {bound} that it chooses"),
+            None => format!("for an error of about {} %", rounded(100.0 * CELL_ERROR, 2)),
+        };
         writeln!(
             out,
-            "  cells        {nu} x {nv}, chosen by a pilot run for an error of about {error} %; `cells = [{nu}, {nv}]` keeps them"
+            "  cells        {nu} x {nv}, chosen by a pilot run {aim}; `cells = [{nu}, {nv}]` keeps them"
         )?;
     }
     writeln!(out, "  flux         {}", with_error(s.flux_lm, s.flux_standard_error_lm, "lm"))?;

@@ -25,6 +25,16 @@ const MOST_PHOTONS: u64 = 1 << 16;
 /// Cells along the longer side. A map of fewer shows nothing; more are for those who ask.
 const COUNTS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
 
+/// Whether cells are as few or as many as a pilot chooses, so that their error may be another than [`CELL_ERROR`].
+pub fn is_at_bound(cells: [u32; 2]) -> Option<&'static str> {
+    let [fewest, .., most] = COUNTS;
+    match cells[0].max(cells[1]) {
+        n if n <= fewest => Some("the fewest"),
+        n if n >= most => Some("the most"),
+        _ => None,
+    }
+}
+
 /// How many times as long as the other side u is on a surface that goes round: about pi on a sphere.
 const ROUND: f64 = 3.0;
 
@@ -149,6 +159,10 @@ mod tests {
         assert_eq!(counts(1000.0, 3.0), [48, 16]);
         // The ends: no fewer than 8 along the longer side, no more than 1024.
         assert_eq!((counts(0.0, 2.0), counts(1e12, 100.0)), ([8, 4], [1024, 10]));
+        assert_eq!(
+            [[8, 4], [10, 1024], [12, 4]].map(is_at_bound),
+            [Some("the fewest"), Some("the most"), None]
+        );
         // Between 96 and 128 the geometric mean decides: 110.85^2 = 12288.
         assert_eq!((counts(12_280.0, 1.0), counts(12_300.0, 1.0)), ([96, 96], [128, 128]));
     }
