@@ -111,7 +111,7 @@ pub use scene::{Joint, Scene, SceneBuilder, SurfaceOptions};
 pub use surface::models::*;
 pub use surface::{Material, Reflectance};
 // Runs:
-pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, trace, warnings};
+pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, choose_cells, trace, warnings};
 pub use sequence::Sequence;
 // Results:
 pub use estimate::extremes::Interval;
@@ -123,7 +123,9 @@ pub use plot::maps::write_png as write_map_png;
 #[cfg(feature = "plots")]
 pub use plot::picture::{write_luminance_png, write_png as write_picture_png};
 pub use report::json::Report;
-pub use report::maps::{write_csv as write_map_csv, write_exr as write_map_exr};
+pub use report::maps::{
+    write_csv as write_map_csv, write_exr as write_map_exr, write_grid_csv as write_map_grid_csv,
+};
 pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
 pub use report::statistics::{GridStatistics, ReceiverStatistics};

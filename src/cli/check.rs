@@ -15,6 +15,7 @@ use crate::report::numbers::{digits, duration, grouped};
 use crate::run::dark::is_long;
 use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
+use crate::scene::receiver::DividedBy;
 use crate::scene::{Scene, requires::requirements};
 
 use super::progress::Progress;
@@ -93,7 +94,14 @@ struct EmitterCheck {
 struct ReceiverCheck {
     name: String,
     cells: usize,
+    /// Whether a run's pilot will choose others.
+    #[serde(skip_serializing_if = "is_not")]
+    cells_by_pilot: bool,
     area_m2: f64,
+}
+
+fn is_not(flag: &bool) -> bool {
+    !flag
 }
 
 #[derive(Debug, Serialize)]
@@ -137,6 +145,7 @@ impl Check {
         let receivers = scene.receivers.iter().map(|r| ReceiverCheck {
             name: r.name.clone(),
             cells: r.cells.len(),
+            cells_by_pilot: r.divided_by == DividedBy::Default,
             area_m2: r.total_area_m2(),
         });
         let camera = scene.camera.as_ref().map(|c| CameraCheck {
@@ -189,12 +198,11 @@ impl Check {
             out += &format!("surface    {}: {edges}, {} m2\n", s.name, digits(s.area_m2));
         }
         for r in &self.receivers {
-            out += &format!(
-                "receiver   {}: {} cells, {} m2\n",
-                r.name,
-                grouped(r.cells as u64),
-                digits(r.area_m2)
-            );
+            let cells = match r.cells_by_pilot {
+                true => "cells by a pilot run".into(),
+                false => format!("{} cells", grouped(r.cells as u64)),
+            };
+            out += &format!("receiver   {}: {cells}, {} m2\n", r.name, digits(r.area_m2));
         }
         if let Some(c) = &self.camera {
             let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);

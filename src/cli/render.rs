@@ -20,7 +20,7 @@ use crate::report::statistics::ReceiverStatistics;
 use crate::report::vouched::vouching;
 use crate::report::vtp::write_vtp;
 use crate::report::{maps, text};
-use crate::run::{Outcome, Plan, Settings, StoppedBy, trace};
+use crate::run::{Outcome, Plan, Settings, StoppedBy, choose_cells, trace};
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
 
@@ -61,7 +61,7 @@ fn load_in_phases(
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &RenderArgs) -> Done {
     let started = Instant::now();
-    let (scene, run) = load(args.scene.as_deref(), args.quiet)?;
+    let (mut scene, run) = load(args.scene.as_deref(), args.quiet)?;
     warn(&scene.warnings);
     scene.found.iter().for_each(say_found);
     picture::check(args, &scene)?;
@@ -76,7 +76,11 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let inputs = results::inputs(args.scene.as_deref(), &scene);
     check_outputs(&outputs(args, &scene), &inputs)?;
     say_rounding(asked, &plan);
-    let (outcome, picture) = traced(args, &scene, &plan)?;
+    let pool = thread_pool(args.threads)?;
+    let progress = Progress::new(args.quiet, "choosing cells", 0);
+    pool.install(|| choose_cells(&mut scene, &plan, &INTERRUPTED))?;
+    progress.clear();
+    let (outcome, picture) = traced(args, &scene, &plan, &pool)?;
     let unseen = picture.as_ref().map_or(0, |picture| picture.summary().pixels_unseen);
     let interrupted = outcome.stopped_by == StoppedBy::Interrupt;
     let beside = beside_earlier(&folder, interrupted || unseen > 0, |photons| {
@@ -138,8 +142,8 @@ pub(super) fn run(args: &RenderArgs) -> Done {
 /// Every file that a run is to write.
 fn outputs(args: &RenderArgs, scene: &Scene) -> Vec<PathBuf> {
     let of_receiver = |receiver: &Receiver| {
-        let names = endings(receiver).iter().map(|ending| format!("{}.{ending}", receiver.name));
-        names.collect::<Vec<_>>()
+        let endings = endings(receiver).into_iter();
+        endings.map(|ending| format!("{}.{ending}", receiver.name)).collect::<Vec<_>>()
     };
     let of_camera = scene.camera.iter().flat_map(|spec| picture::files(spec));
     // A --map gives no maps of receivers.
@@ -171,12 +175,14 @@ pub(super) fn strictly<'a>(is_strict: bool, done: u8, said: impl IntoIterator<It
 }
 
 /// What is written of a receiver, by the endings of the files.
-fn endings(receiver: &Receiver) -> &'static [&'static str] {
-    match receiver.cells {
+fn endings(receiver: &Receiver) -> Vec<&'static str> {
+    let of_cells: &[_] = match receiver.cells {
         Cells::Grid { .. } if maps::has_csv(receiver) => &["exr", "png", "csv"],
         Cells::Grid { .. } => &["exr", "png"],
         Cells::Faces { .. } => &["exr", "csv", "ply", "vtp"],
-    }
+    };
+    let of_grid = receiver.grid.map(|_| "grid.csv");
+    of_cells.iter().copied().chain(of_grid).collect()
 }
 
 /// Makes the files of one receiver; the names of those that could be.
@@ -190,10 +196,11 @@ fn write_receiver(
     let mut made = Vec::new();
     for ending in endings(receiver) {
         let name = format!("{}.{ending}", receiver.name);
-        let is_made = set.add(&name, |path| match *ending {
+        let is_made = set.add(&name, |path| match ending {
             "exr" => maps::write_exr(path, scene, outcome, receiver, s).map(|()| true),
-            "png" => plot::maps::write_png(path, outcome, receiver, s),
+            "png" => plot::maps::write_png(path, scene, outcome, receiver, s),
             "csv" => maps::write_csv(path, scene, receiver, s),
+            "grid.csv" => maps::write_grid_csv(path, scene, receiver, s),
             "ply" => write_ply(path, scene, outcome, receiver, s),
             _ => write_vtp(path, scene, outcome, receiver, s),
         });
@@ -280,8 +287,12 @@ fn of_saved<const C: usize>(args: &RenderArgs, map: &Path, scene: &Scene, plan: 
     picture
 }
 
-fn traced(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<(Outcome, Option<AnyPicture>)> {
-    let pool = thread_pool(args.threads)?;
+fn traced(
+    args: &RenderArgs,
+    scene: &Scene,
+    plan: &Plan,
+    pool: &rayon::ThreadPool,
+) -> Result<(Outcome, Option<AnyPicture>)> {
     let progress = Progress::new(args.quiet, "tracing", plan.photons());
     let photons = |photons| progress.inc(photons);
     let outcome = pool.install(|| {

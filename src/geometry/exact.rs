@@ -4,7 +4,8 @@
 //! are compared as integers (53-bit mantissas, 106-bit products in `i128`), which neither rounds nor underflows and
 //! gives the same bits on every machine.
 
-/// `a b - c d` with the sign of the exact value; the magnitude is the ordinary rounded difference.
+/// `a b - c d` with the sign of the exact value: the difference of the rounded products, or, where these are equal, the exact
+/// difference rounded.
 ///
 /// Zero is returned only for an exact zero. Arguments must be finite and their products must not overflow.
 #[inline(always)]

@@ -9,7 +9,7 @@ const SMALL: f64 = 0.5;
 /// degrees.
 const TINY: f64 = 1.0 / 16.0;
 
-/// sin s, 1 - cos s, and the two first-moment integrals of the cell equation, for s >= 0.
+/// sin s, 1 - cos s, and the two first-moment integrals of the cell equation (METHOD, eq. 8), for s >= 0.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct InCell {
     /// sin s = integral of cos x over [0, s].

@@ -52,7 +52,13 @@ pub struct Isolux {
 }
 
 /// Isolux lines at the scale's ticks of a map of `cells` that is displayed on `display` pixels.
-pub fn isolux(values: &[f64], cells: [usize; 2], display: [usize; 2], axis: &Axis) -> Isolux {
+pub fn isolux(
+    values: &[f64],
+    cells: [usize; 2],
+    display: [usize; 2],
+    axis: &Axis,
+    have_labels: bool,
+) -> Isolux {
     let mut levels: Vec<&Tick> = axis.ticks.iter().filter(|t| t.value > 0.0).collect();
     if levels.len() > 8 {
         levels.retain(|t| !t.label.trim_start_matches(['0', '.']).starts_with('2'));
@@ -76,7 +82,8 @@ pub fn isolux(values: &[f64], cells: [usize; 2], display: [usize; 2], axis: &Axi
             break;
         }
     }
-    Isolux { lines: labelled(best.0, display), smoothing: best.1 }
+    let lines = if have_labels { labelled(best.0, display) } else { whole(best.0) };
+    Isolux { lines, smoothing: best.1 }
 }
 
 /// One more ring of samples that repeats the border, so that lines reach the edge of the map.
@@ -110,6 +117,10 @@ fn lines_of(extended: &[f64], grid: [usize; 2], display: [usize; 2], levels: &[&
     let area = (display[0] * display[1]) as f64;
     let legible = (kept + dropped) * SPACING_PX <= area && dropped <= 0.08 * kept + SHORTEST_PX;
     (lines, legible)
+}
+
+fn whole(lines: Vec<Line>) -> Vec<IsoluxLine> {
+    lines.into_iter().map(|(tick, points)| IsoluxLine { tick, pieces: vec![points], label: None }).collect()
 }
 
 fn labelled(lines: Vec<Line>, display: [usize; 2]) -> Vec<IsoluxLine> {

@@ -5,12 +5,12 @@ use std::path::Path;
 use crate::error::Result;
 use crate::files::png::write_rgb8;
 use crate::picture::camera::Film;
-use crate::report::numbers::{digits, rounded};
+use crate::report::numbers::{digits, rounded, three_digits};
 use crate::report::picture::tone;
 use crate::scene::camera::CameraSpec;
 use crate::surface::luminance_of;
 
-use super::false_colour::{FalseColour, Quantity};
+use super::false_colour::{Axes, FalseColour, Quantity};
 
 /// Writes the picture as a screen shows it, with the camera's exposure. `C` is 1 (luminance) or 3 (linear sRGB whose Y is
 /// luminance), in cd/m2.
@@ -46,15 +46,33 @@ pub fn write_luminance_png<const C: usize>(
         height: film.pixels[1] as usize,
         quantity: Quantity::Luminance,
         values: &values,
-        size_m: None,
+        axes: Axes::None,
+        points: None,
         isolux: false,
-        footer: vec![format!(
-            "white of the picture: {} cd/m2    {}",
-            digits(tone(spec, film).white_cd_m2),
-            error_line(film, &values)
-        )],
+        footer: vec![
+            statistics_line(&values),
+            format!(
+                "white of the picture: {} cd/m2    {}",
+                digits(tone(spec, film).white_cd_m2),
+                error_line(film, &values)
+            ),
+        ],
     };
     picture.render().write_png(path)
+}
+
+/// Minimum, mean and maximum of the pixels that have a value, noise included.
+fn statistics_line(values: &[f64]) -> String {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let count = finite().count();
+    if count == 0 {
+        return "no values".to_owned();
+    }
+    let min = finite().fold(f64::INFINITY, f64::min);
+    let max = finite().fold(f64::NEG_INFINITY, f64::max);
+    let mean = finite().map(|v| v / count as f64).sum::<f64>();
+    let [min, mean, max] = [min, mean, max].map(three_digits);
+    format!("min {min} cd/m2    mean {mean} cd/m2    max {max} cd/m2")
 }
 
 /// Root mean square of the standard error, of the mean luminance.

@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
 use crate::files::exr::{Channel, Light, floats, write_maps};
+use crate::geometry::Shape;
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, Receiver};
@@ -84,32 +85,84 @@ pub fn write_csv(
         return Ok(false);
     }
     let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
-    let numbers = |cell: usize| {
-        let error = bare(Some(statistics.standard_error_lx[cell]));
-        format!("{},{error},{}", statistics.illuminance_lx[cell], statistics.hits[cell])
-    };
-    const NUMBERS: &str = "illuminance_lx,standard_error_lx,hits";
+    let numbers = Numbers::of(statistics);
     write_atomically(path, |out| match receiver.cells {
         Cells::Faces { count } => {
             writeln!(out, "face,x_m,y_m,z_m,area_m2,{NUMBERS}")?;
             for face in 0..count {
                 let Some([a, b, c]) = shape.triangle(face) else { continue };
                 let m = (a + b + c) / 3.0;
-                writeln!(out, "{face},{},{},{},{},{}", m.x, m.y, m.z, receiver.area_m2(face), numbers(face))?;
+                let (area, numbers) = (receiver.area_m2(face), numbers.row(face));
+                writeln!(out, "{face},{},{},{},{area},{numbers}", m.x, m.y, m.z)?;
             }
             Ok(())
         }
         Cells::Grid { nu, nv } => {
-            writeln!(out, "x,y,z,u,v,{NUMBERS}")?;
-            for (row, column) in (0..nv).flat_map(|row| (0..nu).map(move |column| (row, column))) {
-                let u = (f64::from(column) + 0.5) / f64::from(nu);
-                let v = (f64::from(nv - 1 - row) + 0.5) / f64::from(nv);
-                let Some(m) = shape.at(u, v) else { continue };
-                let cell = row as usize * nu as usize + column as usize;
-                writeln!(out, "{},{},{},{u},{v},{}", m.x, m.y, m.z, numbers(cell))?;
-            }
-            Ok(())
+            let middle = |cell: usize| {
+                let (row, column) = (cell / nu as usize, cell % nu as usize);
+                let v = (f64::from(nv - 1) - row as f64 + 0.5) / f64::from(nv);
+                ((column as f64 + 0.5) / f64::from(nu), v)
+            };
+            write_cells(out, shape, receiver.cells.len(), middle, &numbers)
         }
     })?;
     Ok(true)
+}
+
+/// Writes the cells of a receiver's evaluation grid as CSV, the columns those of a map's; false, and no file, where it has no grid.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_grid_csv(
+    path: &Path,
+    scene: &Scene,
+    receiver: &Receiver,
+    statistics: &ReceiverStatistics,
+) -> Result<bool> {
+    let (Some(grid), Some(of)) = (&receiver.grid, &statistics.grid) else { return Ok(false) };
+    let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
+    let numbers = Numbers {
+        illuminance_lx: &of.illuminance_lx,
+        standard_error_lx: &of.standard_error_lx,
+        hits: &of.hits,
+    };
+    write_atomically(path, |out| write_cells(out, shape, grid.cells(), |cell| grid.middle(cell), &numbers))?;
+    Ok(true)
+}
+
+const NUMBERS: &str = "illuminance_lx,standard_error_lx,hits";
+
+/// What a table says of each cell.
+struct Numbers<'a> {
+    illuminance_lx: &'a [f64],
+    standard_error_lx: &'a [f64],
+    hits: &'a [u64],
+}
+
+impl<'a> Numbers<'a> {
+    fn of(statistics: &'a ReceiverStatistics) -> Self {
+        let ReceiverStatistics { illuminance_lx, standard_error_lx, hits, .. } = statistics;
+        Self { illuminance_lx, standard_error_lx, hits }
+    }
+
+    fn row(&self, cell: usize) -> String {
+        let error = bare(Some(self.standard_error_lx[cell]));
+        format!("{},{error},{}", self.illuminance_lx[cell], self.hits[cell])
+    }
+}
+
+fn write_cells(
+    out: &mut dyn Write,
+    shape: &Shape,
+    cells: usize,
+    middle: impl Fn(usize) -> (f64, f64),
+    numbers: &Numbers<'_>,
+) -> std::io::Result<()> {
+    writeln!(out, "x,y,z,u,v,{NUMBERS}")?;
+    for cell in 0..cells {
+        let (u, v) = middle(cell);
+        let Some(m) = shape.at(u, v) else { continue };
+        writeln!(out, "{},{},{},{u},{v},{}", m.x, m.y, m.z, numbers.row(cell))?;
+    }
+    Ok(())
 }

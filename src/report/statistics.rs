@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::run::Outcome;
 use crate::scene::evaluation::Grid;
-use crate::scene::receiver::{Cells, Receiver};
+use crate::scene::receiver::{Cells, DividedBy, Receiver};
 
 use super::uniformity::Uniformity;
 
@@ -42,6 +42,9 @@ pub struct ReceiverStatistics {
     pub area_m2: f64,
     /// Number of cells.
     pub cells: usize,
+    /// Cells along u and v, where a pilot run chose them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells_by_pilot: Option<[u32; 2]>,
     /// sqrt(area-weighted mean of the squared standard errors of the cells) / mean illuminance: what nRMS to expect against the truth.
     pub expected_nrms: Option<f64>,
 }
@@ -49,6 +52,15 @@ pub struct ReceiverStatistics {
 /// Numbers of an evaluation grid.
 #[derive(Debug, Clone, Serialize)]
 pub struct GridStatistics {
+    /// Illuminance of every cell, lx, row by row from the top left.
+    #[serde(skip)]
+    pub illuminance_lx: Vec<f64>,
+    /// Standard error of every cell, lx; NaN where one replicate leaves it unknown.
+    #[serde(skip)]
+    pub standard_error_lx: Vec<f64>,
+    /// Photons counted in every cell.
+    #[serde(skip)]
+    pub hits: Vec<u64>,
     /// Cells along u.
     pub nu: u32,
     /// Cells along v.
@@ -68,13 +80,19 @@ impl GridStatistics {
     fn new(outcome: &Outcome, index: usize, grid: &Grid) -> Self {
         let (nu, nv, unit) = (grid.nu, grid.nv, outcome.photon_lm);
         let (mean, extremes) = outcome.grid(index, grid.area_m2);
+        let cells = (0..grid.cells()).map(|cell| outcome.grid_illuminance_lx(index, cell, grid.area_m2));
+        let cells = cells.map(|cell| (cell.value, cell.standard_error.unwrap_or(f64::NAN)));
+        let (illuminance_lx, standard_error_lx) = cells.unzip();
         Self {
+            illuminance_lx,
+            standard_error_lx,
+            hits: outcome.grid_cells(index).sum.clone(),
             nu,
             nv,
             border_m: grid.border_m,
             mean_lx: mean.value * unit,
             mean_standard_error_lx: mean.standard_error.map(|error| error * unit),
-            uniformity: Uniformity::new(extremes, Cells::Grid { nu, nv }, outcome),
+            uniformity: Uniformity::new(extremes, Cells::Grid { nu, nv }, "grid", outcome),
         }
     }
 }
@@ -107,6 +125,8 @@ impl ReceiverStatistics {
         let max_lx = illuminance_lx.iter().copied().fold(0.0, f64::max);
         let lit = mean_lx > 0.0;
         let extremes = outcome.extremes(index, receiver.areas_m2());
+        // An evaluation grid leaves the map as fine as it is.
+        let key = if receiver.size_m.is_some() { "grid" } else { "cells" };
         Self {
             hits: outcome.cells()[index].sum.clone(),
             flux_lm: flux.value,
@@ -115,10 +135,14 @@ impl ReceiverStatistics {
             mean_lx,
             max_lx,
             uniformity_u0: lit.then(|| min_lx / mean_lx),
-            uniformity: Uniformity::new(extremes, receiver.cells, outcome),
+            uniformity: Uniformity::new(extremes, receiver.cells, key, outcome),
             grid: receiver.grid.map(|grid| GridStatistics::new(outcome, index, &grid)),
             area_m2,
             cells,
+            cells_by_pilot: match (receiver.divided_by, receiver.cells) {
+                (DividedBy::Pilot, Cells::Grid { nu, nv }) => Some([nu, nv]),
+                _ => None,
+            },
             expected_nrms: (lit && outcome.replicates > 1).then(|| (variance / area_m2).sqrt() / mean_lx),
             illuminance_lx,
             standard_error_lx,
@@ -147,6 +171,7 @@ mod tests {
                 grid: None,
                 area_m2: 1.0,
                 cells: 1,
+                cells_by_pilot: None,
                 expected_nrms: None,
             };
             numbers.rounded_hits()

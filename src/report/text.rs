@@ -3,6 +3,7 @@
 use std::fmt::{Result, Write};
 
 use crate::estimate::extremes::Interval;
+use crate::run::pilot::{CELL_ERROR, is_at_bound};
 use crate::run::{Estimate, Outcome, StoppedBy};
 use crate::scene::Scene;
 
@@ -71,6 +72,16 @@ pub fn summary(
 
 fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &[String]) -> Result {
     writeln!(out, "\nreceiver \"{name}\": {} cells, {} m2", grouped(s.cells as u64), digits(s.area_m2))?;
+    if let Some([nu, nv]) = s.cells_by_pilot {
+        let aim = match is_at_bound([nu, nv]) {
+            Some(bound) => format!("as {bound} that it chooses"),
+            None => format!("for an error of about {} %", rounded(100.0 * CELL_ERROR, 2)),
+        };
+        writeln!(
+            out,
+            "  cells        {nu} x {nv}, chosen by a pilot run {aim}; `cells = [{nu}, {nv}]` keeps them"
+        )?;
+    }
     writeln!(out, "  flux         {}", with_error(s.flux_lm, s.flux_standard_error_lm, "lm"))?;
     let mean_error = s.flux_standard_error_lm.map(|e| e / s.area_m2);
     writeln!(out, "  illuminance  mean {}", with_error(s.mean_lx, mean_error, "lx"))?;

@@ -25,8 +25,13 @@ pub struct Uniformity {
 }
 
 impl Uniformity {
-    /// Of extremes in photons a square metre.
-    pub(super) fn new(extremes: Result<Extremes, Unknown>, cells: Cells, outcome: &Outcome) -> Self {
+    /// Of extremes in photons a square metre; `key` of a receiver is what would divide it otherwise.
+    pub(super) fn new(
+        extremes: Result<Extremes, Unknown>,
+        cells: Cells,
+        key: &str,
+        outcome: &Outcome,
+    ) -> Self {
         match extremes {
             Ok(extremes) => Self {
                 u0: Some(extremes.u0),
@@ -35,7 +40,7 @@ impl Uniformity {
                 maximum: Some(extremes.maximum.times(outcome.photon_lm)),
                 reason: None,
             },
-            Err(why) => Self { reason: Some(why_unknown(why, cells, outcome)), ..Self::default() },
+            Err(why) => Self { reason: Some(why_unknown(why, cells, key, outcome)), ..Self::default() },
         }
     }
 }

@@ -13,12 +13,14 @@ pub mod tracer;
 pub mod outcome;
 pub mod in_turn;
 pub mod replicates;
+pub mod pilot;
 pub mod dark;
 pub mod warnings;
 
 pub use algorithm::{Algorithm, Variant};
 pub use in_turn::trace_by;
 pub use outcome::{Estimate, Outcome, StoppedBy};
+pub use pilot::choose_cells;
 pub use plan::{MAX_PHOTONS, MAX_REPLICATES, Plan, Settings};
 pub use replicates::trace;
 pub use tracer::Tracer;

@@ -217,6 +217,11 @@ impl Outcome {
         (mean, Map { cells, areas_m2: &[area_m2], error_of_sum, replicates: self.replicates }.extremes())
     }
 
+    /// Mean illuminance over a cell of a receiver's evaluation grid with this cell area, lx.
+    pub fn grid_illuminance_lx(&self, receiver: usize, cell: usize, area_m2: f64) -> Estimate {
+        self.estimate(&self.grids[receiver], cell, self.photon_lm / area_m2, standard_error_of_cell)
+    }
+
     /// Photons in the cells of a receiver's evaluation grid.
     pub fn grid_cells(&self, receiver: usize) -> &Moments {
         &self.grids[receiver]

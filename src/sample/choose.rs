@@ -42,8 +42,8 @@ impl Share {
         }
     }
 
-    /// A part of this event, chosen by the fraction `v` of it that `find` turns into a part: (what was found,
-    /// the part's probability in this event, what is left of v for a last use).
+    /// Chooses a part of this event. `v` is a fraction within the event; `find` gives the part that owns a fraction of the
+    /// whole. Returns what was found, the part's probability in this event, and what is left of v for a last use.
     #[inline]
     pub fn choose_part<R>(self, v: u64, find: impl FnOnce(u64) -> (R, Self)) -> (R, f64, f64) {
         if self.width == 0 {
@@ -157,8 +157,8 @@ pub fn integer_widths(weights: &[f64]) -> Option<Vec<u64>> {
         return None;
     }
     let total: f64 = weights.iter().map(|w| w / largest).sum();
-    // A width of 2^64 itself can come out when all other weights vanish beside one: held one below, then
-    // corrected.
+    // A width of 2^64 itself can come out when all other weights vanish beside one: the cast gives
+    // 2^64 - 1, which is corrected below.
     let mut widths: Vec<u64> = weights.iter().map(|w| (w / largest / total * TWO_TO_64) as u64).collect();
     let sum: u128 = widths.iter().map(|w| u128::from(*w)).sum();
     let at = weights.iter().position(|w| *w == largest)?;

@@ -76,6 +76,15 @@ impl Grid {
         let row = self.nv - 1 - ((v * f64::from(self.nv)) as u32).min(self.nv - 1);
         Some(row as usize * self.nu as usize + column as usize)
     }
+
+    /// (u, v) of the middle of a cell.
+    pub fn middle(&self, cell: usize) -> (f64, f64) {
+        let (row, column) = (cell / self.nu as usize, cell % self.nu as usize);
+        let outer = |x: f64, border: f64| border + x * (1.0 - 2.0 * border);
+        let u = (column as f64 + 0.5) / f64::from(self.nu);
+        let v = 1.0 - (row as f64 + 0.5) / f64::from(self.nv);
+        (outer(u, self.border[0]), outer(v, self.border[1]))
+    }
 }
 
 /// Cells along the sides.
@@ -117,6 +126,12 @@ mod tests {
         assert_eq!(grid.cell((0.1, 0.85)), Some(0));
         assert_eq!(grid.cell((0.9, 0.11)), Some(7));
         assert_eq!(grid.cell((0.51, 0.11)), Some(6));
+        for cell in 0..8 {
+            assert_eq!(grid.cell(grid.middle(cell)), Some(cell));
+        }
+        // 6 m x 5 m less 0.5 m all round: cells of 1.25 m x 2 m, the last one's middle at 4.875 m and 1.5 m.
+        let (u, v) = grid.middle(7);
+        assert!((6.0 * u - 4.875).abs() < 1e-12 && (5.0 * v - 1.5).abs() < 1e-12, "{u} {v}");
         let none = Grid::new(GridKind::En12464, [1.6, 0.8], 0.4).unwrap_err();
         assert!(none.to_string().contains("0.4 m on a rectangle of 1.6 m x 0.8 m"), "{none}");
     }

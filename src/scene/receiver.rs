@@ -76,7 +76,7 @@ impl ReceiverSpec {
         Ok(Self { name, surface: surface.into(), cells: None, side, events, grid: None, border_m: 0.0 })
     }
 
-    /// The same with so many cells along u and v, `DEFAULT_CELLS` without; not on a mesh, which has one value a face.
+    /// The same with so many cells along u and v, those that a pilot chooses (`choose_cells`) without; not on a mesh, which has one value a face.
     ///
     /// # Errors
     /// No cells, or more than `MOST_CELLS`.
@@ -167,6 +167,17 @@ impl Cells {
     }
 }
 
+/// What divided a receiver into its cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DividedBy {
+    /// The scene, or the faces of a mesh.
+    Scene,
+    /// Nothing yet: `DEFAULT_CELLS`, until `run::choose_cells` is called.
+    Default,
+    /// A pilot run, for cells of about equal error whatever the number of photons.
+    Pilot,
+}
+
 /// A receiver of a scene.
 #[derive(Debug, Clone)]
 pub struct Receiver {
@@ -176,6 +187,8 @@ pub struct Receiver {
     pub surface: SurfaceId,
     /// How that is divided.
     pub cells: Cells,
+    /// What divided it.
+    pub divided_by: DividedBy,
     /// Sides on which arrivals count.
     pub side: ReceiverSide,
     /// Histories that count.
@@ -188,7 +201,7 @@ pub struct Receiver {
     pub grid: Option<Grid>,
 }
 
-/// Cells of receivers without a number of their own.
+/// Cells of receivers without a number of their own, until a pilot chooses them.
 pub const DEFAULT_CELLS: [u32; 2] = [256, 256];
 
 impl Receiver {
@@ -220,6 +233,10 @@ impl Receiver {
                 Cells::Grid { nu, nv }
             }
         };
+        let divided_by = match (cells, spec.cells) {
+            (Cells::Grid { .. }, None) => DividedBy::Default,
+            _ => DividedBy::Scene,
+        };
         let areas_m2 = match cells {
             Cells::Grid { .. } => vec![shape.area() / cells.len() as f64],
             Cells::Faces { .. } => shape.face_areas(),
@@ -250,7 +267,15 @@ impl Receiver {
             }
         };
         let (name, side, events) = (spec.name.clone(), spec.side, spec.events);
-        Ok(Self { name, surface, cells, side, events, areas_m2, size_m, grid })
+        Ok(Self { name, surface, cells, divided_by, side, events, areas_m2, size_m, grid })
+    }
+
+    /// The same receiver of nu x nv cells; one on faces stays as it is.
+    pub fn divided(&self, [nu, nv]: [u32; 2], divided_by: DividedBy) -> Self {
+        let Cells::Grid { .. } = self.cells else { return self.clone() };
+        let cells = Cells::Grid { nu, nv };
+        let areas_m2 = vec![self.total_area_m2() / cells.len() as f64];
+        Self { cells, divided_by, areas_m2, ..self.clone() }
     }
 
     /// Area of a cell, m2.

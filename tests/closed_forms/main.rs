@@ -5,6 +5,7 @@
 mod support;
 
 mod coverage;
+mod default_cells;
 mod determinism;
 mod diffuse_sheet;
 mod direct;

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 
+use serde_json::Value;
+
 use crate::support::maps::{Samples, read_maps};
 use crate::support::stranger::Stranger;
 
@@ -190,4 +192,43 @@ fn a_vtp_has_the_mesh_and_every_number_of_the_table() {
         assert!(errors.iter().zip(&table["standard_error_lx"]).all(|(a, b)| same(a, b)));
         assert_eq!(errors.iter().any(|x| x.is_nan()), !more.is_empty());
     }
+}
+
+/// Cells of 0.9 m x 0.6 m within a border of 0.1 m: mean of the table is the report's, a value is hits over area.
+#[test]
+fn cells_of_an_evaluation_grid_have_a_table_of_their_own() {
+    let s =
+        Stranger::with(&[("scene.toml", &SCENE.replace("cells = [5, 4]", "grid = [2, 3]\nborder_m = 0.1"))]);
+    s.is_told("render scene.toml -o out --photons 2^14 --quiet", 0, &[]);
+    let grid = table(&s, "out/plate.grid.csv");
+    let place = |row: usize| ["x", "y", "z", "u", "v"].map(|name| grid[name][row]);
+    let close = |a: &f64, b: &f64| (a - b).abs() < 1e-12;
+    // From the top left: 0.1 m + 0.45 m along x; 1.9 m - 0.3 m along (0, 0.6, 0.8).
+    assert!(
+        place(0).iter().zip(&[-0.45, -0.04, 1.28, 0.275, 0.8]).all(|(a, b)| close(a, b)),
+        "{:?}",
+        place(0)
+    );
+    assert!(
+        place(5).iter().zip(&[0.45, -0.76, 0.32, 0.725, 0.2]).all(|(a, b)| close(a, b)),
+        "{:?}",
+        place(5)
+    );
+    let report: Value =
+        serde_json::from_str(&fs::read_to_string(s.path("out/report.json")).unwrap()).unwrap();
+    let of_plate = &report["receivers"][0];
+    assert!(report["files"]["plate.grid.csv"].is_string() && grid["hits"].len() == 6);
+    let area = 0.9 * 0.6;
+    for (lux, hits) in grid["illuminance_lx"].iter().zip(&grid["hits"]) {
+        let lumens = hits * 100.0 / f64::from(1 << 14);
+        assert!(*hits > 0.0 && (lux * area / lumens - 1.0).abs() < 1e-12, "{lux} {hits}");
+    }
+    let mean = grid["illuminance_lx"].iter().sum::<f64>() / 6.0;
+    assert!((of_plate["grid"]["mean_lx"].as_f64().unwrap() / mean - 1.0).abs() < 1e-12);
+    // Without `cells` a pilot chooses, and it is told how many; the map's table has so many rows.
+    let [nu, nv] = [0, 1].map(|k| of_plate["cells_by_pilot"][k].as_u64().unwrap());
+    assert_eq!((nu, nu * nv), (nv, table(&s, "out/plate.csv")["u"].len() as u64));
+    assert!(report["receivers"][1].get("cells_by_pilot").is_none());
+    let check: Value = serde_json::from_str(&s.types("check scene.toml --json").1).unwrap();
+    assert_eq!(check["receivers"][0]["cells_by_pilot"], true);
 }

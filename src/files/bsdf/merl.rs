@@ -110,8 +110,8 @@ fn polar_deg() -> Vec<f64> {
 /// theta_h, theta_d and phi_d in radians of a direction of the specular frame; `None` below the horizon.
 fn half_difference(theta_i_deg: f64, polar_deg: f64, azimuth_deg: f64) -> Option<[f64; 3]> {
     let (ti, p, a) = (theta_i_deg.to_radians(), polar_deg.to_radians(), azimuth_deg.to_radians());
-    // wi lies in the half plane of -x; s, the mirrored direction, in that of +x. Azimuth 0 points from s to the normal and
-    // 90 degrees to s x that, +y at normal incidence seen from above turned: (-cos ti, 0, sin ti) and (0, -1, 0).
+    // wi lies in the half plane of -x. s = (sin ti, 0, cos ti) is its mirrored direction. Azimuth 0 about s is along
+    // e = (-cos ti, 0, sin ti), azimuth 90 along s x e = (0, -1, 0).
     let wi = [-sin(ti), 0.0, cos(ti)];
     let (along, up, across) = (cos(p), sin(p) * cos(a), sin(p) * sin(a));
     let wo = [along * sin(ti) - up * cos(ti), -across, along * cos(ti) + up * sin(ti)];
@@ -143,16 +143,16 @@ impl Bins<'_> {
     /// Red, green and blue, 1/sr: linear between the middles of the bins, those not measured left out.
     fn interpolate(&self, [theta_h, theta_d, phi_d]: [f64; 3]) -> Option<[f64; 3]> {
         let quarter = std::f64::consts::FRAC_PI_2;
-        let clamped = |x: f64, n: usize| {
+        let two_bins = |x: f64, n: usize| {
             let x = (x - 0.5).clamp(0.0, (n - 1) as f64);
             let low = (x as usize).min(n - 2);
             [(low, 1.0 - (x - low as f64)), (low + 1, x - low as f64)]
         };
-        let h = clamped((theta_h / quarter).max(0.0).sqrt() * THETA_H as f64, THETA_H);
-        let d = clamped(theta_d / quarter * THETA_D as f64, THETA_D);
-        let turn = (phi_d / std::f64::consts::PI * PHI_D as f64 - 0.5).rem_euclid(PHI_D as f64);
-        let low = (turn as usize).min(PHI_D - 1);
-        let phi = [(low, 1.0 - (turn - low as f64)), ((low + 1) % PHI_D, turn - low as f64)];
+        let h = two_bins((theta_h / quarter).max(0.0).sqrt() * THETA_H as f64, THETA_H);
+        let d = two_bins(theta_d / quarter * THETA_D as f64, THETA_D);
+        let place = (phi_d / std::f64::consts::PI * PHI_D as f64 - 0.5).rem_euclid(PHI_D as f64);
+        let low = (place as usize).min(PHI_D - 1);
+        let phi = [(low, 1.0 - (place - low as f64)), ((low + 1) % PHI_D, place - low as f64)];
         let (mut sum, mut weights) = ([0.0; 3], 0.0);
         for (i, wh) in h {
             for (j, wd) in d {

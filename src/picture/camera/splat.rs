@@ -36,8 +36,7 @@ use super::view::View;
 /// Bits after the point of a contribution, which is about 1 where the pinhole is as far as the scene is
 /// large.
 const FRACTION_BITS: i32 = 48;
-/// Contributions are cut at 2^60 of that: the pinhole nearer to a surface than a thousand-millionth of the
-/// scene.
+/// Larger contributions are cut to this: only where the pinhole is nearer to a surface than 1e-9 of the scene's size.
 const MOST_CONTRIBUTION: f64 = (1u64 << 60) as f64;
 
 /// The sums of a splatted picture, for one replicate.
@@ -51,8 +50,8 @@ pub struct Splat<'s, const C: usize> {
     sums: Vec<[WideSum; C]>,
     /// Luminance in cd/m2 of a photon of 1 lm that contributes 1.
     unit: f64,
-    /// 1 / unit in the contributions' own terms.
-    per_unit: f64,
+    /// The scene's size squared, m2: what a contribution, by the squared distance, is counted in.
+    size_squared: f64,
     joined: AtomicU64,
     cut: AtomicU64,
 }
@@ -117,7 +116,7 @@ impl<'s, const C: usize> Splat<'s, C> {
             scatters: scattering_surfaces(scene),
             sums: (0..pixels).map(|_| std::array::from_fn(|_| WideSum::default())).collect(),
             unit,
-            per_unit: size * size,
+            size_squared: size * size,
             joined: AtomicU64::new(0),
             cut: AtomicU64::new(0),
         })
@@ -174,7 +173,7 @@ impl<'s, const C: usize> Splat<'s, C> {
         // In terms of the unit; d^2 first: either may be far from 1, their product is not.
         let focal_px = self.pinhole.focal_px();
         let magnified = seen.pixels_per_sr / (focal_px * focal_px);
-        let factor = self.per_unit / (distance * distance) * wo.dot(hit.normal).abs() * magnified;
+        let factor = self.size_squared / (distance * distance) * wo.dot(hit.normal).abs() * magnified;
         for row in top as u32..=bottom as u32 {
             let y = p.y - 0.5 - f64::from(row);
             for column in left as u32..=right as u32 {
@@ -210,13 +209,12 @@ impl<'s, const C: usize> Splat<'s, C> {
     }
 }
 
-/// Standard error (cd/m2) owed to a pixel of this luminance where fewer than [`FEWEST_HITS`] photons make it,
-/// whose spread says nothing: that of (photons + 1), a photon being what one would bring that arrives where
-/// the pixel's middle looks. 0 where there are enough.
+/// Standard error (cd/m2) of a pixel whose luminance is that of n photons, n below [`FEWEST_HITS`], so that their spread says
+/// nothing: sqrt(n + 1) times the luminance of one photon that arrives where the pixel's middle looks. 0 from there on.
 pub fn owed(view: &View<'_>, pixel: usize, photon_lm: f64, luminance_cd_m2: f64) -> f64 {
     let one = photon_lm * of_one_lumen(view, pixel);
     let photons = luminance_cd_m2 / one;
-    // No number where a pixel sees nothing that photons could be joined from.
+    // NaN or infinite where a pixel sees nothing that photons could be joined from: the comparison fails.
     if photons < FEWEST_HITS as f64 { one * (photons + 1.0).sqrt() } else { 0.0 }
 }
 

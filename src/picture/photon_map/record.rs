@@ -20,10 +20,11 @@ pub struct Photon<const C: usize> {
 
 /// It arrived on the side the outward normal points to.
 pub const FRONT: u32 = 1 << 16;
-/// It was scattered before: light of L (S|D)* D (S|D)* D, not of L S+ D.
+/// It met a diffuse surface before this one; without the flag only specular ones, which makes a caustic. (Direct light is not
+/// kept.)
 pub const SCATTERED: u32 = 1 << 17;
 
-/// Positions as integers: the bounds of the scene in 2^32 steps an axis.
+/// Positions as integers: 2^32 positions an axis over the bounds of the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     low: DVec3,
@@ -83,7 +84,7 @@ impl Frame {
         )
     }
 
-    /// A distance that no position of the frame is farther from `point` than, m.
+    /// Upper bound on the distance from `point` to any position of the frame, m.
     pub(crate) fn farthest_m(&self, point: DVec3) -> f64 {
         let high = self.position([u32::MAX; 3]);
         (point - self.low).abs().max((point - high).abs()).length() * (1.0 + 1e-12)

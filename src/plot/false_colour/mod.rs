@@ -3,7 +3,7 @@
 
 use crate::report::colour::Colour;
 use crate::report::colour::map::{colour, lightness, value_colour};
-use crate::report::colour::scale::{Axis, Tick, linear_ticks};
+use crate::report::colour::scale::{Axis, Tick};
 use crate::report::numbers::three_digits;
 
 use super::canvas::{Anchor, Canvas, TextStyle};
@@ -11,6 +11,12 @@ use super::drawing::ink;
 use super::font;
 use super::isolux::{Isolux, LABEL_SIZE_PX, isolux};
 use super::resample::area_average;
+
+mod axes;
+mod points;
+
+pub use axes::Axes;
+pub use points::Points;
 
 /// Maps below this on their longer side are magnified past it.
 const MAGNIFY_BELOW: usize = 700;
@@ -47,11 +53,13 @@ pub struct FalseColour<'a> {
     pub quantity: Quantity,
     /// Values in the quantity's unit, `width` x `height`, the row of the largest v first; NaN and infinities are "no value".
     pub values: &'a [f64],
-    /// Sides along u and v in metres; without it the axes run from 0 to 1.
-    pub size_m: Option<[f64; 2]>,
+    /// What stands around the map.
+    pub axes: Axes,
+    /// Values printed at places of it; isolux lines then carry none.
+    pub points: Option<Points>,
     /// Whether to draw isolux lines.
     pub isolux: bool,
-    /// Lines of text under the picture.
+    /// Lines of text under the picture, the first before what the drawing has to say.
     pub footer: Vec<String>,
 }
 
@@ -90,10 +98,14 @@ impl FalseColour<'_> {
     pub fn render(&self) -> Canvas {
         let (values, cells) = self.map();
         let axis = fit_map(values, cells);
-        let display = display_size(cells, self.size_m);
-        let lines = if self.isolux { isolux(values, cells, display, &axis) } else { Isolux::default() };
+        let display = display_size(cells, self.axes.size_m());
+        let lines = if self.isolux {
+            isolux(values, cells, display, &axis, self.points.is_none())
+        } else {
+            Isolux::default()
+        };
         let labels = bar_labels(&axis);
-        let text = self.footer_text(values, &lines);
+        let text = self.footer_text(values, &lines, display);
         let mut layout = self.layout(display, &labels);
         let room = (layout.size[0] - 2 * MARGIN) as f64;
         let footer: Vec<String> = text
@@ -110,7 +122,11 @@ impl FalseColour<'_> {
             canvas.set_pixel(left + i % width, top + i / width, value_colour(value, &axis));
         }
         draw_lines(&mut canvas, &layout, &axis, &lines);
-        self.draw_axes(&mut canvas, &layout);
+        if let Some(points) = &self.points {
+            points.draw(&mut canvas, layout.map);
+        }
+        frame(&mut canvas, layout.map);
+        self.axes.draw(&mut canvas, layout.map);
         draw_bar(&mut canvas, &layout, &axis, &labels, self.quantity);
         for (i, line) in footer.iter().enumerate() {
             let y = layout.footer_y + (i + 1) * LINE_HEIGHT - 6;
@@ -129,8 +145,8 @@ impl FalseColour<'_> {
     }
 
     fn layout(&self, display: [usize; 2], labels: &[(f64, String)]) -> Layout {
-        let (_, v_ticks) = self.axis_ticks(display);
-        let left = MARGIN + widest(v_ticks.iter().map(|t| t.label.as_str())) + 34;
+        let [_, up] = self.axes.marks(display);
+        let left = MARGIN + widest(up.marks.iter().map(|(_, label)| label.as_str())) + 34;
         let top = MARGIN + 36;
         let map = [left, top, display[0], display[1]];
         let bar_x = left + display[0] + BAR_GAP;
@@ -139,16 +155,6 @@ impl FalseColour<'_> {
         let right = bar_x + BAR_WIDTH + label_room + MARGIN;
         let below = (top + display[1] + 48).max(top + bar[3] + 14);
         Layout { map, bar, footer_y: below + 6, size: [right.max(NARROWEST_PICTURE), 0] }
-    }
-
-    fn sides(&self) -> [f64; 2] {
-        valid_size(self.size_m).unwrap_or([1.0, 1.0])
-    }
-
-    fn axis_ticks(&self, display: [usize; 2]) -> (Vec<Tick>, Vec<Tick>) {
-        let count = |pixels: usize, room: usize| (pixels / room).clamp(1, 8);
-        let [u, v] = self.sides();
-        (linear_ticks(0.0, u, count(display[0], 90)), linear_ticks(0.0, v, count(display[1], 70)))
     }
 
     fn draw_title(&self, canvas: &mut Canvas) {
@@ -162,53 +168,21 @@ impl FalseColour<'_> {
         canvas.text([MARGIN as f64, (MARGIN + 16) as f64], &title, &style);
     }
 
-    fn draw_axes(&self, canvas: &mut Canvas, layout: &Layout) {
-        let [x, y, width, height] = layout.map.map(|p| p as f64);
-        frame(canvas, layout.map);
-        if self.quantity == Quantity::Luminance {
-            return;
-        }
-        let [u, v] = self.sides();
-        let (u_ticks, v_ticks) = self.axis_ticks([layout.map[2], layout.map[3]]);
-        let style = TextStyle::new(TICK_SIZE, ink());
-        let mut free_from = f64::NEG_INFINITY;
-        for tick in &u_ticks {
-            let at = crisp(x + tick.value / u * width);
-            canvas.line([at, y + height + 1.0], [at, y + height + TICK_LENGTH], 1.0, ink());
-            let half = 0.5 * font::width_px(&tick.label, TICK_SIZE, true);
-            // On a narrow map the numbers would run into each other.
-            if at - half > free_from {
-                let place = [at, y + height + TICK_LENGTH + 14.0];
-                canvas.text(place, &tick.label, &style.anchored(Anchor::Middle));
-                free_from = at + half + 6.0;
-            }
-        }
-        for tick in &v_ticks {
-            let at = crisp(y + height - tick.value / v * height);
-            canvas.line([x - 1.0, at], [x - TICK_LENGTH, at], 1.0, ink());
-            canvas.text([x - TICK_LENGTH - 5.0, at + 4.0], &tick.label, &style.anchored(Anchor::End));
-        }
-        let unit = if valid_size(self.size_m).is_some() { " [m]" } else { "" };
-        let name = TextStyle::new(TEXT_SIZE, ink()).anchored(Anchor::Middle);
-        canvas.text([x + 0.5 * width, y + height + TICK_LENGTH + 33.0], &format!("u{unit}"), &name);
-        let beside = [MARGIN as f64 + 10.0, y + 0.5 * height];
-        canvas.text_rotated(beside, -std::f64::consts::FRAC_PI_2, &format!("v{unit}"), &name, 0.0);
-    }
-
-    fn footer_text(&self, values: &[f64], lines: &Isolux) -> Vec<String> {
-        let mut text = vec![statistics_line(values, self.quantity)];
+    fn footer_text(&self, values: &[f64], lines: &Isolux, display: [usize; 2]) -> Vec<String> {
+        let mut text: Vec<_> = self.footer.iter().take(1).cloned().collect();
         let empty = values.iter().filter(|v| !v.is_finite()).count();
         if empty > 0 {
             text.push(format!("grey: no value ({empty} of {} cells)", values.len()));
         }
         if lines.smoothing > 0.0 {
-            let width = match valid_size(self.size_m) {
+            let width = match self.axes.size_m() {
                 Some([u, v]) => format!("{} mm", three_digits(1e3 * lines.smoothing * u.max(v))),
                 None => format!("{} % of the side", three_digits(100.0 * lines.smoothing)),
             };
             text.push(format!("isolux lines: of the map smoothed by a Gaussian, standard deviation {width}"));
         }
-        text.extend(self.footer.iter().cloned());
+        text.extend(self.points.iter().map(|points| points.said(display)));
+        text.extend(self.footer.iter().skip(1).cloned());
         text
     }
 }
@@ -220,21 +194,6 @@ fn fit_map(values: &[f64], cells: [usize; 2]) -> Axis {
     Axis::fit_with_typical(values, &area_average(values, cells, coarse))
 }
 
-/// Minimum, mean and maximum of the cells that have a value. No uniformity: of noisy cells it is noise.
-fn statistics_line(values: &[f64], quantity: Quantity) -> String {
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let count = finite().count();
-    if count == 0 {
-        return "no values".to_owned();
-    }
-    let min = finite().fold(f64::INFINITY, f64::min);
-    let max = finite().fold(f64::NEG_INFINITY, f64::max);
-    let mean = finite().map(|v| v / count as f64).sum::<f64>();
-    let [min, mean, max] = [min, mean, max].map(three_digits);
-    let unit = quantity.unit();
-    format!("min {min} {unit}    mean {mean} {unit}    max {max} {unit}")
-}
-
 /// Pixels on which a map of so many cells is shown; cells become squares, or follow `size_m`.
 fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
     let longest = cells[0].max(cells[1]).max(1);
@@ -242,7 +201,7 @@ fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
     let side = (longest * factor).min(SHRINK_ABOVE);
     let aspect = |[a, b]: [f64; 2]| a / b;
     let grid = aspect([cells[0] as f64, cells[1] as f64]);
-    let wanted = valid_size(size_m).map_or(grid, aspect);
+    let wanted = size_m.map_or(grid, aspect);
     let square = (wanted / grid - 1.0).abs() < 1e-3;
     let shape = if square && longest <= SHRINK_ABOVE {
         [cells[0] * factor, cells[1] * factor]
@@ -252,10 +211,6 @@ fn display_size(cells: [usize; 2], size_m: Option<[f64; 2]>) -> [usize; 2] {
         [(side as f64 * wanted).round() as usize, side]
     };
     shape.map(|pixels| pixels.max(NARROWEST))
-}
-
-fn valid_size(size_m: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    size_m.filter(|size| size.iter().all(|s| s.is_finite() && *s > 0.0) && (size[0] / size[1]).is_normal())
 }
 
 fn draw_lines(canvas: &mut Canvas, layout: &Layout, axis: &Axis, isolux: &Isolux) {

@@ -10,7 +10,8 @@ fn picture(values: &[f64], width: usize, height: usize) -> FalseColour<'_> {
         height,
         quantity: Quantity::Illuminance,
         values,
-        size_m: None,
+        axes: Axes::Metres([0.0, 0.0]),
+        points: None,
         isolux: false,
         footer: vec![],
     }
@@ -29,7 +30,7 @@ impl Drawn {
     fn new(picture: &FalseColour<'_>) -> Self {
         let (values, cells) = picture.map();
         let labels = bar_labels(&fit_map(values, cells));
-        let layout = picture.layout(display_size(cells, picture.size_m), &labels);
+        let layout = picture.layout(display_size(cells, picture.axes.size_m()), &labels);
         let canvas = picture.render();
         let (bytes, width) = (canvas.to_srgb_bytes(), canvas.width());
         Self { height: bytes.len() / (3 * width), bytes, width, map: layout.map, bar: layout.bar }
@@ -107,7 +108,7 @@ fn isolux_lines_of_a_cone_are_circles_of_the_right_radius() {
     let axis = Axis::fit(&values);
     let display = display_size([n, n], None);
     assert_eq!(display, [800, 800]);
-    let found = isolux(&values, [n, n], display, &axis);
+    let found = isolux(&values, [n, n], display, &axis, true);
     assert_eq!(found.smoothing, 0.0, "a smooth map is not smoothed further");
     let levels: Vec<f64> = found.lines.iter().map(|l| l.tick.value).collect();
     assert_eq!(levels, [200.0, 400.0, 600.0, 800.0]);
@@ -132,7 +133,7 @@ fn isolux_lines_of_noise_are_smoothed_until_they_are_few_and_right() {
         .map(|i| 100.0 + 200.0 * ((i % n) as f64 + 0.5) / n as f64 + 80.0 * (noise(i as u64) - 0.5))
         .collect();
     let display = display_size([n, n], None);
-    let found = isolux(&values, [n, n], display, &Axis::fit(&values));
+    let found = isolux(&values, [n, n], display, &Axis::fit(&values), true);
     assert!(found.smoothing > 0.0);
     let middle: Vec<_> = found.lines.iter().filter(|l| l.tick.value == 200.0).collect();
     assert_eq!(middle.len(), 1);
@@ -148,7 +149,7 @@ fn labels_keep_off_each_other_and_inside_the_map() {
     let wave = |i: usize| 500.0 + 300.0 * ((i % n) as f64 / 25.0).sin() * ((i / n) as f64 / 31.0).cos();
     let values: Vec<f64> = (0..n * n).map(wave).collect();
     let display = display_size([n, n], None);
-    let found = isolux(&values, [n, n], display, &Axis::fit(&values));
+    let found = isolux(&values, [n, n], display, &Axis::fit(&values), true);
     let labels: Vec<_> = found.lines.iter().filter_map(|l| l.label).collect();
     assert!(labels.len() > 10, "{}", labels.len());
     for (i, a) in labels.iter().enumerate() {
@@ -164,19 +165,19 @@ fn labels_keep_off_each_other_and_inside_the_map() {
 
 #[test]
 fn maps_are_magnified_by_whole_factors_shown_as_they_are_or_averaged_down() {
-    for (cells, size_m, display) in [
-        ([64, 64], None, [704, 704]),
-        ([512, 256], None, [1024, 512]),
-        ([650, 650], None, [650, 650]),
-        ([1000, 900], None, [1000, 900]),
-        ([2400, 1200], None, [1200, 600]),
-        ([1, 1], None, [700, 700]),
-        ([1, 500], None, [48, 1000]),
-        ([100, 100], Some([2.0, 1.0]), [700, 350]),
-        ([100, 100], Some([f64::NAN, 1.0]), [700, 700]),
-        ([100, 100], Some([1e-300, 1e300]), [700, 700]),
+    for (cells, axes, display) in [
+        ([64, 64], Axes::None, [704, 704]),
+        ([512, 256], Axes::None, [1024, 512]),
+        ([650, 650], Axes::None, [650, 650]),
+        ([1000, 900], Axes::None, [1000, 900]),
+        ([2400, 1200], Axes::None, [1200, 600]),
+        ([1, 1], Axes::None, [700, 700]),
+        ([1, 500], Axes::None, [48, 1000]),
+        ([100, 100], Axes::Metres([2.0, 1.0]), [700, 350]),
+        ([100, 100], Axes::Metres([f64::NAN, 1.0]), [700, 700]),
+        ([100, 100], Axes::Metres([1e-300, 1e300]), [700, 700]),
     ] {
-        assert_eq!(display_size(cells, size_m), display, "{cells:?} {size_m:?}");
+        assert_eq!(display_size(cells, axes.size_m()), display, "{cells:?} {axes:?}");
     }
 }
 
@@ -201,10 +202,12 @@ fn every_map_gives_a_picture() {
         ("sides that do not fit", &[1.0; 5], 2, 2),
     ];
     for (name, values, width, height) in cases {
-        for size_m in [None, Some([0.5, 2.0]), Some([0.0, f64::NAN])] {
+        for axes in
+            [Axes::None, Axes::Sphere, Axes::Round, Axes::Metres([0.5, 2.0]), Axes::Metres([0.0, f64::NAN])]
+        {
             let drawn = Drawn::new(&FalseColour {
                 isolux: true,
-                size_m,
+                axes,
                 footer: vec!["word ".repeat(60), "x".repeat(300)],
                 title: &"long title ".repeat(30),
                 ..picture(values, width, height)
@@ -240,7 +243,7 @@ fn what_is_typical_does_not_depend_on_how_few_photons_a_cell_got() {
 fn the_png_holds_the_picture_and_is_the_same_every_time() {
     let directory = tempfile::tempdir().unwrap();
     let values: Vec<f64> = (0..100 * 80).map(|i| noise(i) * 500.0).collect();
-    let map = FalseColour { isolux: true, size_m: Some([1.0, 0.8]), ..picture(&values, 100, 80) };
+    let map = FalseColour { isolux: true, axes: Axes::Metres([1.0, 0.8]), ..picture(&values, 100, 80) };
     let paths = [directory.path().join("a.png"), directory.path().join("b.png")];
     for path in &paths {
         map.render().write_png(path).unwrap();
