@@ -25,6 +25,20 @@ pub(crate) struct Checked {
     pub face_lines: Vec<usize>,
     /// What was left out.
     pub warnings: Vec<Diagnostic>,
+    /// Vertices and normals.
+    points: usize,
+}
+
+impl Checked {
+    /// Triangles of all fans.
+    pub fn triangles(&self) -> usize {
+        self.corner_has_normal.len() - 2 * self.face_lines.len()
+    }
+
+    /// Vertices and normals.
+    pub fn points(&self) -> usize {
+        self.points
+    }
 }
 
 struct Line<'a> {
@@ -105,6 +119,7 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
     if checked.face_lines.is_empty() {
         return Err(Diagnostic::new(Kind::Missing, "no face", "at least one line f"));
     }
+    checked.points = vertices + normals;
     Ok(checked)
 }
 

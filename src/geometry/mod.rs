@@ -35,6 +35,8 @@ mod triangle;
 mod whereabouts;
 mod wide;
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 pub use box_mesh::box_mesh;
@@ -203,7 +205,7 @@ impl Geometry {
                 let (l, h) = world(s, primitive - info[i as usize].first_primitive as usize);
                 *bounds = normalisation.bounds(l - reach, h + reach);
             }
-            Contacts::find(&surfaces, &info, bonds, (&binary.with_boxes(&boxes), &boxes, &owner))
+            Contacts::find(&surfaces, &info, bonds, (&binary.with_boxes(&boxes), &boxes, &owner))?
         };
         for contact in contacts.pairs() {
             contact.surfaces.iter().for_each(|s| info[s.0 as usize].touches = true);
@@ -262,12 +264,12 @@ impl Geometry {
 
     /// Pairs of transparent closed surfaces whose faces cut each other, the lower number first; twice the same for one that
     /// cuts itself.
-    pub fn cuts(&self) -> &[[SurfaceId; 2]] {
+    pub fn cuts(&self) -> &BTreeSet<[SurfaceId; 2]> {
         self.contacts.cuts()
     }
 
     /// Clear bodies and opaque surfaces whose triangles cut each other.
-    fn solid_cuts(&self) -> &[[SurfaceId; 2]] {
+    fn solid_cuts(&self) -> &BTreeSet<[SurfaceId; 2]> {
         self.contacts.solid_cuts()
     }
 
