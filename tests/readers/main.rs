@@ -32,4 +32,5 @@ mod scene_errors;
 mod scene_limits;
 mod scene_own;
 mod scene_shape_errors;
+mod scene_strangers;
 mod scene_tabulated;
