@@ -14,7 +14,6 @@ use std::path::Path;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf::words::Words;
 use crate::files::bytes::{check_length, read_capped};
-use crate::files::excerpt::quoted;
 use crate::scattering::ScatterTable;
 
 /// Larger files are refused; a MERL file has 35 MB.
@@ -66,7 +65,11 @@ impl Format {
             Some("bsdf") => Ok(Self::Zemax),
             Some("xml") => Ok(Self::Klems),
             Some("binary") => Ok(Self::Merl),
-            _ => refuse(Kind::Unknown, first.map_or("a file without a word".to_owned(), |w| quoted(w.text))),
+            // Not even its first word is repeated: the file may be anybody's.
+            _ => refuse(
+                Kind::Unknown,
+                if first.is_some() { "a file of another format" } else { "a file without a word" }.into(),
+            ),
         }
     }
 
