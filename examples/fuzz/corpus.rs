@@ -50,8 +50,12 @@ pub fn texts() -> Vec<Vec<u8>> {
 }
 
 pub fn zemaxes() -> Vec<Vec<u8>> {
-    let tristimulus = ZEMAX.replace("Monochrome", "XYZ");
-    vec![ZEMAX.into(), ZEMAX.replace("PlaneSymmetrical", "Asymmetrical").into(), tristimulus.into()]
+    let around = ZEMAX.replace("PlaneSymmetrical", "Asymmetrical").replace("0\t90\t180", "0\t120\t240");
+    let (head, block) = ZEMAX.split_once("Monochrome\nDataBegin").expect("a block");
+    let blocks: String =
+        ["X", "Y", "Z"].map(|channel| format!("Tristimulus{channel}\nDataBegin{block}")).concat();
+    let coloured = head.replace("Monochrome", "XYZ") + &blocks;
+    vec![ZEMAX.into(), around.into(), coloured.into()]
 }
 
 pub fn meshes() -> Vec<Vec<u8>> {

@@ -15,6 +15,7 @@ mod corpus;
 mod mutate;
 mod readers;
 
+use std::hint::black_box;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 use std::process::ExitCode;
@@ -51,6 +52,8 @@ fn main() -> ExitCode {
     let mut readers = readers::all(&folder);
     readers.push(readers::whole_merl());
     readers.retain(|reader| only.as_ref().is_none_or(|name| reader.name == name));
+    let checked = panic::catch_unwind(|| black_box(u8::MAX) + black_box(1)).is_err();
+    println!("overflow checks: {}\n", if checked { "on" } else { "off" });
     println!(
         "| reader | cases | read | refused | longest, ms | most memory, MiB | failures |\n|---|---|---|---|---|---|---|"
     );
@@ -103,7 +106,12 @@ fn fuzz(reader: &Reader, cases: std::ops::Range<u64>, seed: u64, folder: &Path) 
     // The good files are good.
     for (k, good) in reader.corpus.iter().enumerate() {
         let ran = panic::catch_unwind(AssertUnwindSafe(|| (reader.run)(good.clone(), &mut Generator(0))));
-        assert!(ran.is_ok(), "{}: its good file {k}: {}", reader.name, PANIC.lock().unwrap());
+        // Some are of formats that are known and not read.
+        let is_other = ["OBJ", "scene's mesh", "MERL head"].contains(&reader.name);
+        if !ran.is_ok_and(|read| read || is_other) {
+            println!("{}: its good file {k} is not read: {}", reader.name, PANIC.lock().unwrap());
+            tally.failures += 1;
+        }
     }
     for case in cases {
         let mut random = generator(reader.name, seed, case);

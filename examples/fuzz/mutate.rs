@@ -35,10 +35,13 @@ const NUMBERS: [&str; 22] = [
 const WORDS: [u64; 8] =
     [0, 1, u64::MAX, 1 << 31, 1 << 63, 0x7ff0_0000_0000_0000, 0x7ff8_0000_0000_0001, 0x7fef_ffff_ffff_ffff];
 
+/// Changes: often one alone, so that what comes behind it is reached.
+const CHANGES: [usize; 8] = [1, 1, 1, 1, 2, 2, 3, 4];
+
 /// The bytes with one to four changes; `other` is what is spliced in.
 pub fn mutate(bytes: &[u8], other: &[u8], random: &mut Generator) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    for _ in 0..=random.below(4) {
+    for _ in 0..CHANGES[random.below(CHANGES.len())] {
         change(&mut bytes, other, random);
     }
     bytes.truncate(LONGEST.max(other.len()));
@@ -52,7 +55,7 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Generator) {
     }
     let at = random.below(bytes.len());
     let end = (at + 1 + random.below(64)).min(bytes.len());
-    match random.below(14) {
+    match random.below(17) {
         0 => bytes[at] ^= 1 << random.below(8),
         1 => bytes[at] = [0, 0xff, b'\n', b' ', b'-', b'"', 0x80, b'['][random.below(8)],
         2 => bytes.insert(at, random.next() as u8),
@@ -62,13 +65,14 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Generator) {
             drop(bytes.splice(to..to, piece));
         }
         5 => bytes.truncate(at),
-        6 => {
+        6 | 14 => {
             let [from, to] = word(bytes, at, |b| b.is_ascii_digit() || b"+-.eE".contains(&b));
             drop(bytes.splice(from..to, NUMBERS[random.below(NUMBERS.len())].bytes()));
         }
         7 => {
             let line = line(bytes, at);
             let times = if random.below(8) == 0 { random.below(200) } else { 1 };
+            let times = times.min(LONGEST / (line[1] - line[0]).max(1) + 1);
             let copies = bytes[line[0]..line[1]].repeat(times);
             drop(bytes.splice(line[1]..line[1], copies));
         }
@@ -86,6 +90,11 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Generator) {
             let from = random.below(other.len());
             let piece = &other[from..(from + random.below(200)).min(other.len())];
             drop(bytes.splice(at..end, piece.iter().copied()));
+        }
+        15 | 16 => {
+            if let Some(digit) = bytes[at..].iter_mut().find(|b| b.is_ascii_digit()) {
+                *digit = b'0' + random.below(10) as u8;
+            }
         }
         _ => {
             let size = if random.below(2) == 0 { 4 } else { 8 };

@@ -5,6 +5,7 @@
 //! texture coordinates and file references do not.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::visible;
 use crate::geometry::MAX_COORDINATE_M;
 
 /// Elements (`v`, `vn`, corners of `f`) a file may have in all.
@@ -67,7 +68,7 @@ impl Line<'_> {
 /// A word in quotation marks, cut to a length a message can bear.
 fn quote(word: &str) -> String {
     let short: String = word.chars().take(40).collect();
-    format!("\"{short}\"")
+    format!("\"{}\"", visible(&short))
 }
 
 /// Checks a whole file.
