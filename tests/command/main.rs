@@ -18,3 +18,5 @@ mod result_set;
 mod result_set_cut;
 mod results_kept;
 mod sample;
+#[cfg(unix)]
+mod strangers;

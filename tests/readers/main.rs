@@ -34,3 +34,4 @@ mod scene_own;
 mod scene_shape_errors;
 mod scene_strangers;
 mod scene_tabulated;
+mod survivors;

@@ -360,3 +360,47 @@ fn no_message_repeats_a_foreign_file() {
         println!("{reader}: {told}");
     }
 }
+
+#[test]
+fn the_caps_of_the_manual_are_those_of_the_code() {
+    use caustix::files::bytes::{FILE_LIMIT_BYTES, FILES_LIMIT_BYTES};
+    use caustix::files::scene_toml::{MOST_PARTS, SCENE_LIMIT_BYTES, asked};
+    use caustix::files::{bsdf, height_image, lm63};
+    use caustix::geometry::{MOST_CELLS, MOST_PAIRS};
+    use caustix::scene::{camera, receiver};
+    let power = |n: u64| {
+        assert!(n.is_power_of_two());
+        format!("2^{}", n.trailing_zeros())
+    };
+    let bytes = |n: u64| if n >= 1 << 30 { format!("{} GiB", n >> 30) } else { format!("{} MiB", n >> 20) };
+    let two = |a: String, b: String| format!("{a}; {b}");
+    let rows = [
+        ("the scene file", bytes(SCENE_LIMIT_BYTES)),
+        ("a file that it names; all of them", two(bytes(FILE_LIMIT_BYTES), bytes(FILES_LIMIT_BYTES))),
+        (
+            "a photometric file; a scattering table",
+            two(bytes(lm63::MAX_FILE_BYTES), bytes(bsdf::MAX_FILE_BYTES)),
+        ),
+        ("emitters, materials, surfaces, receivers", format!("{MOST_PARTS} each")),
+        ("candela values, once for each lamp", power(asked::MOST_CANDELA)),
+        ("values of scattering tables, once for each material", power(asked::MOST_SCATTERING)),
+        ("cells of a heightfield; of all", two(power(MOST_CELLS), power(asked::MOST_CELLS))),
+        ("waves and octaves times cells", power(asked::MOST_TERMS)),
+        (
+            "pixels of a height image; of all, once for each surface",
+            two(power(height_image::MOST_PIXELS), power(asked::MOST_PIXELS)),
+        ),
+        ("triangles of all surfaces", power(asked::MOST_TRIANGLES)),
+        ("vertices and normals, once for each mesh", power(asked::MOST_VERTICES)),
+        ("pairs of faces that meet, and 64 more for each face", power(MOST_PAIRS)),
+        (
+            "cells of all receivers, their grids and the faces of meshes among them",
+            power(receiver::MOST_CELLS),
+        ),
+        ("pixels of the camera", power(camera::MOST_PIXELS)),
+        ("events of a photon", caustix::transport::walk::MAX_EVENTS.to_string()),
+    ];
+    let manual = fs::read_to_string(project().join("docs/SECURITY.md")).unwrap();
+    let table: String = rows.iter().map(|(what, most)| format!("| {what} | {most} |\n")).collect();
+    assert!(manual.contains(&table), "docs/SECURITY.md has not\n{table}");
+}

@@ -4,7 +4,7 @@
 //! keys to the constructors of what it describes and adds the place to what they refuse. What needs another file is made by
 //! [`SceneFile::build`], when the text is known to be good.
 
-mod asked;
+pub mod asked;
 mod camera;
 mod canonical;
 pub mod count;
@@ -35,11 +35,11 @@ use crate::surface::Kind as MaterialKind;
 use document::Document;
 use loader::Loader;
 use parts::Parts;
-pub use parts::RunDefaults;
+pub use parts::{MOST_PARTS, RunDefaults};
 use table::Table;
 
 /// Largest scene file that is read: 16 MiB.
-const SCENE_LIMIT_BYTES: u64 = 16 << 20;
+pub const SCENE_LIMIT_BYTES: u64 = 16 << 20;
 
 /// A scene file whose text is good; the files that it names have not been read.
 pub struct SceneFile {

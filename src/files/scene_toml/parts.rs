@@ -14,7 +14,7 @@ use crate::scene::media::Medium;
 use crate::scene::receiver::ReceiverSpec;
 
 /// Most emitters, materials, surfaces or receivers of one scene, each.
-const MOST_PARTS: usize = 4096;
+pub const MOST_PARTS: usize = 4096;
 
 /// Most replicates.
 const MOST_REPLICATES: u64 = 65_536;
