@@ -34,6 +34,7 @@ pub struct ObjOptions {
 /// # Errors
 /// A line that cannot be read (with its number), numbers out of range, indices that name nothing, no face, and
 /// everything [`Mesh::new`] refuses.
+#[cfg(feature = "internals")]
 pub fn parse_obj(bytes: &[u8], name: &Path, options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
     mesh_of(&check_obj(bytes, name)?, name, options)
 }

@@ -41,7 +41,9 @@ use glam::DVec3;
 
 pub use box_mesh::box_mesh;
 use contact::Contacts;
-pub use contact::{Bond, Contact, MOST_PAIRS};
+#[cfg(feature = "internals")]
+pub use contact::MOST_PAIRS;
+pub use contact::{Bond, Contact};
 pub use height_image::{HEIGHT, HeightImage};
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
 pub use mesh::{Mesh, MeshParts, Smoothing};

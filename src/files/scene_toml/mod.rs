@@ -34,8 +34,10 @@ use crate::scene::{Identity, Scene, SceneBuilder};
 use crate::surface::Kind as MaterialKind;
 use document::Document;
 use loader::Loader;
+#[cfg(feature = "internals")]
+pub use parts::MOST_PARTS;
 use parts::Parts;
-pub use parts::{MOST_PARTS, RunDefaults};
+pub use parts::RunDefaults;
 use table::Table;
 
 /// Largest scene file that is read: 16 MiB.
