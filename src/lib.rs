@@ -98,7 +98,8 @@ pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};
 pub use emitter::sources::*;
 pub use emitter::{AimFrame, Colour, Emits, Emitter};
 pub use files::scene_toml::{
-    RunDefaults, SceneFile, built_in as built_in_scene, parse_scene, read as read_scene_file, read_scene,
+    RunDefaults, SceneFile, built_in as built_in_scene, parse_scene, read as read_scene_file,
+    read_confined as read_confined_scene_file, read_scene,
 };
 pub use geometry::{
     Facing, Formula, HeightImage, Heightfield, Mesh, Noise, Octave, Paraboloid, Rectangle, Shape, Smoothing,

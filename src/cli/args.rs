@@ -43,6 +43,9 @@ pub struct RenderArgs {
     /// Trace nothing: the camera's picture of photons saved by --save-map under the same settings.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
+    /// Read files at or below the scene's folder alone, links followed: for scenes from strangers.
+    #[arg(long)]
+    pub confine: bool,
     /// Exit with 4 where a warning says that a number is wrong (severity "untrusted").
     #[arg(long)]
     pub strict: bool,
@@ -110,6 +113,9 @@ pub struct CheckArgs {
     /// As JSON.
     #[arg(long)]
     pub json: bool,
+    /// Read files at or below the scene's folder alone, links followed: for scenes from strangers.
+    #[arg(long)]
+    pub confine: bool,
     /// Exit with 4 where a warning says that a number would be wrong (severity "untrusted").
     #[arg(long)]
     pub strict: bool,

@@ -1,13 +1,14 @@
 //! `caustix check SCENE.toml`: everything that can be known without tracing, and what a few thousand photons find.
 
 use std::cmp::Reverse;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use serde::Serialize;
 
 use crate::emitter::Emits;
 use crate::error::warning::{Severity, Warning};
-use crate::error::{Diagnostic, Result};
+use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::Shape;
 use crate::picture;
 use crate::report::json::json;
@@ -18,9 +19,10 @@ use crate::scene::camera::Method;
 use crate::scene::receiver::DividedBy;
 use crate::scene::{Scene, requires::requirements};
 
+use super::deadline::{flagged, or_end};
 use super::progress::Progress;
 use super::render::{say_found, strictly};
-use super::{CheckArgs, Done, exit, print, render, say, warn};
+use super::{CheckArgs, Done, exit, fail, print, render, say, warn};
 
 #[derive(Debug, Default, Serialize)]
 struct Check {
@@ -51,6 +53,10 @@ const PHOTONS: u64 = 4096;
 /// Photons where each takes long.
 const FEWER: u64 = 256;
 
+/// The longest that a probe lasts, and a check, by the clock: the rays of a scene that means harm cost as much as it likes.
+const LONGEST_PROBE: Duration = Duration::from_secs(60);
+const LONGEST: Duration = Duration::from_secs(300);
+
 /// What a run of this scene would say of itself, to a few photons and eye paths; what was found without them, too.
 /// How many photons that were, and the time that a million takes, s.
 struct Probed {
@@ -60,19 +66,53 @@ struct Probed {
 }
 
 fn probe(scene: &Scene) -> Result<Probed> {
+    let is_over = AtomicBool::new(false);
     let of = |photons| {
         let settings = Settings { photons: Some(photons), replicates: Some(1), ..Settings::default() };
-        trace(scene, &Plan::new(&settings)?, &AtomicBool::new(false), &|_| {})
+        match trace(scene, &Plan::new(&settings)?, &is_over, &|_| {}) {
+            Err(e) if e.kind() == Kind::Interrupted => Ok(None),
+            outcome => outcome.map(Some),
+        }
     };
-    let mut outcome = of(FEWER)?;
-    if !is_long(&outcome) {
-        outcome = of(PHOTONS)?;
+    let (outcome, seen) = flagged(LONGEST_PROBE, &is_over, || {
+        let mut outcome = of(FEWER)?;
+        if outcome.as_ref().is_some_and(|few| !is_long(few)) {
+            outcome = of(PHOTONS)?.or(outcome);
+        }
+        Ok::<_, Diagnostic>((outcome, picture::probe(scene, &is_over)?))
+    })?;
+    let (mut photons, mut million_s, mut said) = (0, 0.0, Vec::new());
+    match &outcome {
+        None => said.extend(scene.found.iter().cloned()),
+        Some(outcome) => {
+            said = warnings(scene, outcome);
+            photons = outcome.photons;
+            if is_long(outcome) {
+                million_s = 1e6 * outcome.trace_s / photons as f64;
+            }
+        }
     }
-    let mut said = warnings(scene, &outcome);
-    said.extend(picture::probe(scene)?);
+    said.extend(seen);
+    if is_over.load(Ordering::Relaxed) {
+        said.push(probe_ended(photons));
+    }
     said.sort_by_key(|warning| Reverse(warning.severity));
-    let million_s = if is_long(&outcome) { 1e6 * outcome.trace_s / outcome.photons as f64 } else { 0.0 };
-    Ok(Probed { photons: outcome.photons, million_s, said })
+    Ok(Probed { photons, million_s, said })
+}
+
+/// That the photons, or eye paths, of a scene take too long to be probed.
+fn probe_ended(photons: u64) -> Warning {
+    Warning {
+        severity: Severity::Doubtful,
+        code: "probe-ended",
+        message: format!(
+            "the probe was ended after {} s, at {photons} photons: what more of them would find is not known",
+            LONGEST_PROBE.as_secs()
+        ),
+        surfaces: Vec::new(),
+        share: None,
+        remedy: "surfaces without thousands of large faces in one place, and that absorb; `render` would take long, too".into(),
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -219,9 +259,22 @@ impl Check {
     }
 }
 
+/// Says that a check took too long.
+fn told_late(is_json: bool) {
+    let found = format!("a scene that is not checked after {} s", LONGEST.as_secs());
+    let required = "a scene of fewer faces and emitters, or of fewer bodies in one another";
+    let error = [Diagnostic::new(Kind::Limit, found, required)];
+    match json(&Check::of_errors(&error)) {
+        Ok(text) if is_json => print(&text),
+        _ => _ = fail(None, &error),
+    }
+}
+
 /// Runs the subcommand; the exit code.
 pub fn run(args: &CheckArgs) -> Done {
-    let ready = render::load(args.scene.as_deref(), args.json).and_then(|(scene, _)| {
+    let is_json = args.json;
+    let _until_done = or_end(LONGEST, exit::WRONG, move || told_late(is_json));
+    let ready = render::load(args.scene.as_deref(), args.confine, args.json).and_then(|(scene, _)| {
         // What `render` refuses is not ready.
         picture::check(&scene)?;
         Ok(scene)

@@ -1,6 +1,7 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
 mod args;
+mod deadline;
 mod misuse;
 mod progress;
 mod results;

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::bytes::read_capped;
 use crate::files::folder::{Folder, LOCK};
 use crate::files::outputs::{check_outputs, entry};
 use crate::files::scene_toml::{self, RunDefaults};
@@ -31,25 +32,30 @@ use super::{Done, RenderArgs, algorithm, count, exit, picture, print, results, s
 
 /// The list of a run's files.
 const REPORT: &str = "report.json";
+/// Largest one of an earlier run that is looked at.
+const MOST_REPORT_BYTES: u64 = 1 << 30;
 
-/// Reads and builds a scene; without a path the built-in one.
+/// Reads and builds a scene, from its own folder alone if it is confined to that; without a path the built-in one.
 pub(super) fn load(
     path: Option<&Path>,
+    confine: bool,
     quiet: bool,
 ) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
     let name = path.map_or("the built-in scene".into(), |path| path.display().to_string());
     let progress = Progress::new(quiet, &format!("reading {name}"), 0);
-    let loaded = load_in_phases(path, || progress.phase(format!("building {name}")));
+    let loaded = load_in_phases(path, confine, || progress.phase(format!("building {name}")));
     progress.clear();
     loaded
 }
 
 fn load_in_phases(
     path: Option<&Path>,
+    confine: bool,
     building: impl FnOnce(),
 ) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
     let file = match path {
         Some(path) if path.is_dir() => return Err(a_folder(path, "a scene file (TOML)").into()),
+        Some(path) if confine => scene_toml::read_confined(path)?,
         Some(path) => scene_toml::read(path)?,
         None => scene_toml::built_in()?,
     };
@@ -61,7 +67,7 @@ fn load_in_phases(
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &RenderArgs) -> Done {
     let started = Instant::now();
-    let (mut scene, run) = load(args.scene.as_deref(), args.quiet)?;
+    let (mut scene, run) = load(args.scene.as_deref(), args.confine, args.quiet)?;
     warn(&scene.warnings);
     scene.found.iter().for_each(say_found);
     picture::check(args, &scene)?;
@@ -323,8 +329,8 @@ pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
 /// The folder `interrupted` beside results of `more` photons, which interrupted ones would replace; `None` where there are none.
 fn beside_earlier(folder: &Folder, interrupted: bool, more: impl Fn(u64) -> bool) -> Result<Option<Folder>> {
     let earlier = || {
-        let text = std::fs::read_to_string(folder.path().join(REPORT)).ok()?;
-        serde_json::from_str::<serde_json::Value>(&text).ok()?.get("photons")?.as_u64()
+        let text = read_capped(&folder.path().join(REPORT), MOST_REPORT_BYTES).ok()?;
+        serde_json::from_slice::<serde_json::Value>(&text).ok()?.get("photons")?.as_u64()
     };
     if !interrupted || !earlier().is_some_and(more) {
         return Ok(None);

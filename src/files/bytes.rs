@@ -1,17 +1,21 @@
 //! Files as bytes: capped, regular files only, and those of a scene each once.
 
-use std::fs::File;
+use std::collections::HashMap;
+use std::fs::{File, Metadata, OpenOptions};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::confine::Confinement;
 use crate::files::excerpt::visible;
 use crate::files::suggest;
 use crate::math::digest::sha256_hex;
 
 /// Largest file that a scene may name (mesh, photometric file, image): 1 GiB.
-const FILE_LIMIT_BYTES: u64 = 1 << 30;
+pub const FILE_LIMIT_BYTES: u64 = 1 << 30;
+/// Most bytes of all files of a scene: 2 GiB. They stay in memory until the scene is built.
+pub const FILES_LIMIT_BYTES: u64 = 2 << 30;
 
 /// The files the built-in scene names, under the names it uses.
 const BUILT_IN_FILES: [(&str, &[u8]); 1] =
@@ -22,59 +26,131 @@ const BUILT_IN_FILES: [(&str, &[u8]); 1] =
 pub enum Base {
     /// A directory: normally that of the scene file.
     Directory(PathBuf),
+    /// A directory that no file may lie outside of.
+    Confined(PathBuf, Confinement),
     /// The files inside the program; there are no others.
     BuiltIn,
 }
 
-/// The files of a scene. Each is read once, however often it is named, and its hash is that of the bytes that were used.
+/// The files of a scene. Each is read once, however often and by whatever names it is named, and its hash is that of the bytes
+/// that were used.
 #[derive(Debug)]
 pub(crate) struct Files {
     base: Base,
-    read: Vec<(String, Rc<[u8]>)>,
-    /// Index into `read` of each use.
-    uses: Vec<usize>,
+    read: Vec<Rc<[u8]>>,
+    /// Index into `read`, by the names in the scene and by where they lead to.
+    by_name: HashMap<String, usize>,
+    by_place: HashMap<PathBuf, usize>,
+    /// The name of each use.
+    uses: Vec<String>,
+    bytes: u64,
+    limit_bytes: u64,
+    is_over: bool,
 }
 
 impl Files {
     pub(crate) fn new(base: Base) -> Self {
-        Self { base, read: Vec::new(), uses: Vec::new() }
+        let (by_name, by_place) = (HashMap::new(), HashMap::new());
+        Self {
+            base,
+            read: Vec::new(),
+            by_name,
+            by_place,
+            uses: Vec::new(),
+            bytes: 0,
+            limit_bytes: FILES_LIMIT_BYTES,
+            is_over: false,
+        }
     }
 
     /// Where this path, as written in the scene, leads to; the path itself for a file inside the program.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         match &self.base {
-            Base::Directory(directory) => directory.join(name),
+            Base::Directory(directory) | Base::Confined(directory, _) => directory.join(name),
             Base::BuiltIn => name.into(),
         }
     }
 
-    /// The bytes of the file of this name, at most [`FILE_LIMIT_BYTES`].
+    /// The bytes of the file of this name, at most [`FILE_LIMIT_BYTES`], and at most [`FILES_LIMIT_BYTES`] with those before.
     pub(crate) fn load(&mut self, name: &str) -> Result<Rc<[u8]>> {
-        if let Some(known) = self.read.iter().position(|(known, _)| known == name) {
-            self.uses.push(known);
-            return Ok(Rc::clone(&self.read[known].1));
-        }
-        let bytes: Rc<[u8]> = match self.base {
-            Base::Directory(_) => read_capped(&self.path(name), FILE_LIMIT_BYTES)?.into(),
-            Base::BuiltIn => built_in_file(name)?.into(),
-        };
-        self.uses.push(self.read.len());
-        self.read.push((name.to_owned(), Rc::clone(&bytes)));
+        let (_, bytes) = self.look(name)?;
+        self.uses.push(name.to_owned());
         Ok(bytes)
+    }
+
+    /// The same without a use of the file that [`Files::hashes`] would tell, and its number.
+    pub(crate) fn look(&mut self, name: &str) -> Result<(usize, Rc<[u8]>)> {
+        let number = self.number(name)?;
+        Ok((number, Rc::clone(&self.read[number])))
+    }
+
+    /// The number of the file of this name, which is read; the same for all its names.
+    fn number(&mut self, name: &str) -> Result<usize> {
+        if let Some(number) = self.by_name.get(name) {
+            return Ok(*number);
+        }
+        let place = self.place(name)?;
+        let number = match self.by_place.get(&place) {
+            Some(number) => *number,
+            None => {
+                let bytes: Rc<[u8]> = match self.base {
+                    Base::BuiltIn => built_in_file(name)?.into(),
+                    _ => self.read_next(&place)?.into(),
+                };
+                self.bytes += bytes.len() as u64;
+                self.read.push(bytes);
+                self.by_place.insert(place, self.read.len() - 1);
+                self.read.len() - 1
+            }
+        };
+        self.by_name.insert(name.to_owned(), number);
+        Ok(number)
+    }
+
+    /// What is read where a file is named; links are followed, so that one file has one place.
+    fn place(&self, name: &str) -> Result<PathBuf> {
+        match &self.base {
+            Base::Directory(directory) => {
+                let path = directory.join(name);
+                Ok(path.canonicalize().unwrap_or(path))
+            }
+            Base::Confined(_, confinement) => confinement.admit(name),
+            Base::BuiltIn => Ok(name.into()),
+        }
+    }
+
+    /// Whether a file was refused because of those before it.
+    pub(crate) fn is_over(&self) -> bool {
+        self.is_over
+    }
+
+    fn read_next(&mut self, path: &Path) -> Result<Vec<u8>> {
+        let room = self.limit_bytes - self.bytes;
+        let size = regular(path, FILE_LIMIT_BYTES)?.len();
+        if size > room {
+            self.is_over = true;
+            let shown = visible(&path.display().to_string());
+            let found =
+                format!("the file `{shown}`, with which there are {} bytes", self.bytes.saturating_add(size));
+            let required = format!("at most {} bytes in all files of a scene", self.limit_bytes);
+            return Err(Diagnostic::new(Kind::Limit, found, required));
+        }
+        read_capped(path, room.min(FILE_LIMIT_BYTES))
     }
 
     /// Whether [`Files::load`] would find a file of acceptable size, without reading it.
     pub(crate) fn probe(&self, name: &str) -> Result<()> {
         match self.base {
-            Base::Directory(_) => open(&self.path(name), FILE_LIMIT_BYTES).map(drop),
+            Base::Directory(_) => regular(&self.path(name), FILE_LIMIT_BYTES).map(drop),
+            Base::Confined(..) => regular(&self.place(name)?, FILE_LIMIT_BYTES).map(drop),
             Base::BuiltIn => built_in_file(name).map(drop),
         }
     }
 
     /// (name, SHA-256) of what was read, once for each part of the scene that names it, in their order.
     pub(crate) fn hashes(&self) -> Vec<(String, String)> {
-        let read: Vec<_> = self.read.iter().map(|(name, bytes)| (name.clone(), sha256_hex(bytes))).collect();
-        self.uses.iter().map(|k| read[*k].clone()).collect()
+        let hashes: Vec<String> = self.read.iter().map(|bytes| sha256_hex(bytes)).collect();
+        self.uses.iter().map(|name| (name.clone(), hashes[self.by_name[name]].clone())).collect()
     }
 }
 
@@ -84,25 +160,44 @@ fn built_in_file(path: &str) -> Result<&'static [u8]> {
     })
 }
 
-/// Open a regular file of at most `limit_bytes`. A pipe or a device is refused: it could block or never end.
-fn open(path: &Path, limit_bytes: u64) -> Result<File> {
+/// What is known of a regular file of at most `limit_bytes`, by its path. A pipe or a device is refused: it could block or never
+/// end, and only to open it may do something.
+fn regular(path: &Path, limit_bytes: u64) -> Result<Metadata> {
     let shown = visible(&path.display().to_string());
-    let io = |why: String| Diagnostic::new(Kind::Io, why, "a file that can be read");
-    // The kind is asked before opening: opening a pipe waits for its other end.
+    let io = |why: String| Diagnostic::new(Kind::Io, why, READABLE);
     let metadata = std::fs::metadata(path).map_err(|e| match e.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => like_it(io(format!("no file `{shown}`")), path),
         _ => io(format!("the file `{shown}`, which cannot be opened: {e}")),
     })?;
-    if metadata.is_dir() {
-        return Err(io(format!("`{shown}`, which is a folder")));
-    }
+    check_regular(path, metadata, limit_bytes)
+}
+
+fn check_regular(path: &Path, metadata: Metadata, limit_bytes: u64) -> Result<Metadata> {
     if !metadata.is_file() {
-        return Err(io(format!("`{shown}`, which is not a file")));
+        let what =
+            if metadata.is_dir() { "a folder" } else { "not a regular file (a pipe, a device or a socket)" };
+        let found = format!("`{}`, which is {what}", visible(&path.display().to_string()));
+        return Err(Diagnostic::new(Kind::Io, found, "a regular file"));
     }
-    if metadata.len() > limit_bytes {
-        return Err(too_large(path, limit_bytes));
-    }
-    File::open(path).map_err(|e| io(format!("the file `{shown}`, which cannot be opened: {e}")))
+    if metadata.len() > limit_bytes { Err(too_large(path, limit_bytes)) } else { Ok(metadata) }
+}
+
+const READABLE: &str = "a file that can be read";
+
+/// Open a regular file of at most `limit_bytes`. It is looked at again once it is open: in between, another may have been put in
+/// its place, so opening must not wait for a pipe's other end.
+fn open(path: &Path, limit_bytes: u64) -> Result<File> {
+    regular(path, limit_bytes)?;
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK);
+    let opened = options.open(path).and_then(|file| Ok((file.metadata()?, file)));
+    let (metadata, file) = opened.map_err(|e| {
+        let shown = visible(&path.display().to_string());
+        Diagnostic::new(Kind::Io, format!("the file `{shown}`, which cannot be opened: {e}"), READABLE)
+    })?;
+    check_regular(path, metadata, limit_bytes).map(|_| file)
 }
 
 /// The error that a file is not there, with the one of its folder that was probably meant: it has the same ending and
@@ -150,8 +245,8 @@ pub(crate) fn read_capped(path: &Path, limit_bytes: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let file = open(path, limit_bytes)?;
     file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(|e| {
-        let found = format!("the file `{}`, which cannot be read: {e}", path.display());
-        Diagnostic::new(Kind::Io, found, "a file that can be read")
+        let shown = visible(&path.display().to_string());
+        Diagnostic::new(Kind::Io, format!("the file `{shown}`, which cannot be read: {e}"), READABLE)
     })?;
     if bytes.len() as u64 > limit_bytes {
         return Err(too_large(path, limit_bytes));
@@ -177,6 +272,27 @@ mod tests {
             assert_eq!(files.probe(bad).unwrap_err().kind(), Kind::Io);
         }
         assert!(files.probe("a.bin").is_ok());
+    }
+
+    #[test]
+    fn all_files_together_have_a_cap_and_each_counts_once() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a", "b"] {
+            std::fs::write(folder.path().join(name), [7u8; 100]).unwrap();
+        }
+        let mut files = Files::new(Base::Directory(folder.path().to_path_buf()));
+        files.limit_bytes = 199;
+        for name in ["a", "./a", "a"] {
+            assert_eq!(files.load(name).unwrap().len(), 100);
+        }
+        assert_eq!(files.bytes, 100);
+        let error = files.load("b").unwrap_err();
+        assert_eq!(error.kind(), Kind::Limit);
+        assert!(error.found().ends_with("b`, with which there are 200 bytes"), "{error}");
+        assert_eq!(error.required(), "at most 199 bytes in all files of a scene");
+        files.limit_bytes = 200;
+        assert_eq!(files.load("b").unwrap().len(), 100);
+        assert_eq!(files.hashes().len(), 4);
     }
 
     #[test]

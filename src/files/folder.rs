@@ -13,6 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::{clear_temporaries, make_directory};
+use crate::files::bytes::read_capped;
 
 /// The file that is locked.
 pub const LOCK: &str = ".caustix.lock";
@@ -146,10 +147,7 @@ impl Drop for Folder {
 
 /// Names that a manifest lists; none where it is not there or no manifest.
 pub(super) fn listed(manifest: &Path) -> Vec<String> {
-    let text = || {
-        let is_read = fs::metadata(manifest).is_ok_and(|m| m.is_file() && m.len() <= MOST_MANIFEST_BYTES);
-        is_read.then(|| fs::read(manifest).ok()).flatten()
-    };
+    let text = || read_capped(manifest, MOST_MANIFEST_BYTES).ok();
     let read = || serde_json::from_slice::<serde_json::Value>(&text()?).ok();
     let Some(json) = read() else { return Vec::new() };
     json["files"].as_object().map(|files| files.keys().cloned().collect()).unwrap_or_default()

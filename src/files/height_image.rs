@@ -9,23 +9,29 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::HeightImage;
 
 /// Most pixels of a picture.
-const MOST_PIXELS: u64 = 1 << 26;
+pub const MOST_PIXELS: u64 = 1 << 26;
 
 /// Luminances of the primaries of sRGB (IEC 61966-2-1): what red, green and blue count in a luma.
 const LUMA: [f32; 3] = [0.21264784, 0.7151792, 0.07217304];
+
+/// Columns and rows that the head of a PNG tells.
+///
+/// # Errors
+/// Bytes that are no PNG. The diagnostic does not name the file.
+pub fn size(bytes: &[u8]) -> Result<[u64; 2]> {
+    let (width, height) = Decoder::new(Cursor::new(bytes)).read_header_info().map_err(no_png)?.size();
+    Ok([width.into(), height.into()])
+}
+
+fn no_png(e: DecodingError) -> Diagnostic {
+    Diagnostic::new(Kind::Syntax, format!("no readable PNG: {e}"), "a PNG of 8 or 16 bits")
+}
 
 /// Heights from the bytes of a PNG of 8 or 16 bits: black is `low_m`, white `high_m` (m); colours count by their luma.
 ///
 /// # Errors
 /// Bytes that are no PNG, or one of more than 2^26 pixels. The diagnostic does not name the file.
 pub fn parse(bytes: &[u8], [low_m, high_m]: [f64; 2]) -> Result<HeightImage> {
-    let no_png = |e: DecodingError| {
-        Diagnostic::new(
-            Kind::Syntax,
-            format!("no readable PNG: {}", e.to_string().trim_end_matches('.')),
-            "a PNG of 8 or 16 bits",
-        )
-    };
     let mut decoder =
         Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 16 * MOST_PIXELS as usize });
     // The size is asked for before anything is decoded.

@@ -6,6 +6,7 @@ pub mod atomic;
 pub mod base64;
 pub mod bsdf;
 pub mod bytes;
+mod confine;
 mod decode;
 mod excerpt;
 pub mod exr;

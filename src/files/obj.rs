@@ -6,9 +6,14 @@ use glam::DVec3;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::kinds::{Use, instead};
-use crate::files::obj_text::{Checked, check};
+pub(crate) use crate::files::obj_text::Checked;
+use crate::files::obj_text::check;
 use crate::geometry::mesh::NO_NORMAL;
 use crate::geometry::{Mesh, MeshParts, Smoothing, Transform};
+
+/// Concave faces that are told one by one.
+const MOST_CONCAVE: usize = 10;
+const CONVEX: &str = "convex polygons, or triangles";
 
 /// What to make of an OBJ file.
 #[derive(Debug, Clone, Copy, Default)]
@@ -29,19 +34,43 @@ pub struct ObjOptions {
 /// # Errors
 /// A line that cannot be read (with its number), numbers out of range, indices that name nothing, no face, and
 /// everything [`Mesh::new`] refuses.
+#[cfg(feature = "internals")]
 pub fn parse_obj(bytes: &[u8], name: &Path, options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
-    parse(bytes, options)
-        .map(|(mesh, warnings)| (mesh, warnings.into_iter().map(|w| w.in_file(name)).collect()))
-        .map_err(|d| {
-            let name = name.display().to_string();
-            instead(bytes, Use::Mesh, "a mesh in an OBJ file", &name).unwrap_or(d).in_file(name)
-        })
+    mesh_of(&check_obj(bytes, name)?, name, options)
 }
 
-fn parse(bytes: &[u8], options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
+/// The text of an OBJ file, from which [`mesh_of`] makes meshes; how many triangles that takes is known by then.
+///
+/// # Errors
+/// A line that cannot be read (with its number), numbers out of range, indices that name nothing, no face.
+pub(crate) fn check_obj(bytes: &[u8], name: &Path) -> Result<Checked> {
+    checked(bytes).map_err(|d| {
+        let name = name.display().to_string();
+        instead(bytes, Use::Mesh, "a mesh in an OBJ file", &name).unwrap_or(d).in_file(name)
+    })
+}
+
+fn checked(bytes: &[u8]) -> Result<Checked> {
     // Names and comments may be in any encoding; geometry is ASCII.
     let text = String::from_utf8_lossy(bytes);
-    let mut checked = check(text.strip_prefix('\u{feff}').unwrap_or(&text))?;
+    check(text.strip_prefix('\u{feff}').unwrap_or(&text))
+}
+
+/// The mesh of a checked text, and the warnings about it.
+///
+/// # Errors
+/// Everything [`Mesh::new`] refuses.
+pub(crate) fn mesh_of(
+    checked: &Checked,
+    name: &Path,
+    options: &ObjOptions,
+) -> Result<(Mesh, Vec<Diagnostic>)> {
+    made(checked, options)
+        .map(|(mesh, warnings)| (mesh, warnings.into_iter().map(|w| w.in_file(name)).collect()))
+        .map_err(|d| d.in_file(name))
+}
+
+fn made(checked: &Checked, options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> {
     let load = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..tobj::LoadOptions::default() };
     let models =
         tobj::load_obj_buf(&mut checked.geometry.as_bytes(), &load, |_| Err(tobj::LoadError::GenericFailure));
@@ -51,8 +80,8 @@ fn parse(bytes: &[u8], options: &ObjOptions) -> Result<(Mesh, Vec<Diagnostic>)> 
         let found = format!("{} objects where one was written", models.len());
         return Err(Diagnostic::new(Kind::Syntax, found, "one object"));
     };
-    let mut warnings = std::mem::take(&mut checked.warnings);
-    let parts = assemble(&model.mesh, &checked, &options.transform, &mut warnings)?;
+    let mut warnings = checked.warnings.clone();
+    let parts = assemble(&model.mesh, checked, &options.transform, &mut warnings)?;
     let (mesh, more) = Mesh::new(parts, options.smoothing, options.closed)?;
     warnings.extend(more);
     Ok((mesh, warnings))
@@ -70,7 +99,7 @@ fn assemble(
     let normals: Vec<DVec3> = points(&mesh.normals).into_iter().map(|n| transform.normal(n)).collect();
     let smooth = checked.corner_has_normal.contains(&true);
     let mut parts = MeshParts { vertices, normals, ..MeshParts::default() };
-    let mut first = 0usize;
+    let (mut first, mut concave) = (0usize, 0usize);
     for (f, &line) in checked.face_lines.iter().enumerate() {
         let arity = mesh.face_arities.get(f).map_or(3, |&a| a as usize);
         let range = first..first + arity;
@@ -85,9 +114,11 @@ fn assemble(
             _ => NO_NORMAL,
         };
         if is_concave(corners, &parts.vertices) {
-            let found = format!("face {} (concave): its fan of triangles folds over", f + 1);
-            warnings
-                .push(Diagnostic::new(Kind::Geometry, found, "convex polygons, or triangles").at(line, 1));
+            concave += 1;
+            if concave <= MOST_CONCAVE {
+                let found = format!("face {} (concave): its fan of triangles folds over", f + 1);
+                warnings.push(Diagnostic::new(Kind::Geometry, found, CONVEX).at(line, 1));
+            }
         }
         for k in 2..arity {
             parts.triangles.push([corners[0], corners[k - 1], corners[k]]);
@@ -96,6 +127,10 @@ fn assemble(
                 parts.normal_indices.push([normal(0), normal(k - 1), normal(k)]);
             }
         }
+    }
+    if concave > MOST_CONCAVE {
+        let found = format!("{} more concave faces", concave - MOST_CONCAVE);
+        warnings.push(Diagnostic::new(Kind::Geometry, found, CONVEX));
     }
     Ok(parts)
 }

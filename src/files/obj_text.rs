@@ -6,6 +6,7 @@
 
 use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::visible;
 use crate::geometry::MAX_COORDINATE_M;
 
 /// Elements (`v`, `vn`, corners of `f`) a file may have in all.
@@ -26,6 +27,20 @@ pub(crate) struct Checked {
     pub face_lines: Vec<usize>,
     /// What was left out.
     pub warnings: Vec<Diagnostic>,
+    /// Vertices and normals.
+    points: usize,
+}
+
+impl Checked {
+    /// Triangles of all fans.
+    pub fn triangles(&self) -> usize {
+        self.corner_has_normal.len() - 2 * self.face_lines.len()
+    }
+
+    /// Vertices and normals.
+    pub fn points(&self) -> usize {
+        self.points
+    }
 }
 
 struct Line<'a> {
@@ -60,7 +75,7 @@ impl Line<'_> {
 /// A word in quotation marks, cut to a length a message can bear.
 fn quote(word: &str) -> String {
     let short: String = word.chars().take(40).collect();
-    format!("\"{short}\"")
+    format!("\"{}\"", visible(&short))
 }
 
 /// Checks a whole file.
@@ -116,6 +131,7 @@ pub(crate) fn check(text: &str) -> Result<Checked> {
             "at least one line `f 1 2 3`: points and lines alone are no surface",
         ));
     }
+    checked.points = vertices + normals;
     Ok(checked)
 }
 

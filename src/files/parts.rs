@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::{make_directory, write_atomically};
+use crate::files::bytes::read_capped;
 use crate::math::digest::sha256_hex;
 
 /// First line of every part.
@@ -51,17 +52,16 @@ impl Parts {
     /// Looks for the part of this key.
     pub fn load(&self, kind: &str, key: &str) -> Found {
         let path = self.path(kind, key);
-        let Ok(metadata) = std::fs::metadata(&path) else { return Found::Missing };
+        if std::fs::metadata(&path).is_err() {
+            return Found::Missing;
+        }
         let damaged = |found: String| {
             let required = "a whole part of this study: it is made again";
             Found::Damaged(Diagnostic::new(Kind::Syntax, found, required).in_file(&path))
         };
-        if metadata.len() > MOST_BYTES {
-            return damaged(format!("{} bytes", metadata.len()));
-        }
-        let bytes = match std::fs::read(&path) {
+        let bytes = match read_capped(&path, MOST_BYTES) {
             Ok(bytes) => bytes,
-            Err(e) => return damaged(format!("\"{e}\" while reading")),
+            Err(e) => return damaged(e.found().to_owned()),
         };
         let content = &bytes[bytes.iter().position(|b| *b == b'\0').map_or(bytes.len(), |at| at + 1)..];
         if bytes.starts_with(header(key, content).as_bytes()) {

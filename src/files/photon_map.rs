@@ -10,6 +10,7 @@ use glam::DVec3;
 use sha2::{Digest, Sha256};
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::cut;
 use crate::picture::photon_map::{Frame, Photon, SavedMap};
 
 /// How a saved photon map begins.
@@ -83,7 +84,7 @@ pub fn read<const C: usize>(bytes: &[u8], expected_scene_hash: &str) -> Result<S
     let scene_hash = reader.text()?;
     let settings = reader.text()?;
     if scene_hash != expected_scene_hash {
-        let found = format!("photons with hash {scene_hash}, traced by {settings}");
+        let found = format!("photons with hash {}, traced by {}", cut(&scene_hash), cut(&settings));
         let required = format!("photons of this scene and these settings, hash {expected_scene_hash}");
         return Err(Diagnostic::new(Kind::Range, found, required).hint(
             "ask for the same settings; if they are, trace the photons again: the scene or a file of it has changed",

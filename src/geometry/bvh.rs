@@ -81,9 +81,17 @@ pub(crate) fn build(boxes: &[Bounds]) -> BinaryTree {
     tree.unwrap_or_else(|| balanced(boxes))
 }
 
+/// A box as the builder gets it, wider by up to a 64th. It joins pairs of boxes that are each other's best: along a row of boxes
+/// that are equal, or grow all the way, the best one is always the one on the same side, and each of its rounds joins one pair.
+fn widened(i: u32, b: &Bounds) -> Aabb {
+    let share = (i.wrapping_mul(0x9e37_79b9) >> 8) as f32 / (64.0 * (1 << 24) as f32);
+    let (lo, hi) = (Vec3A::from_array(b.lo), Vec3A::from_array(b.hi));
+    let by = (hi - lo) * (0.5 * share);
+    Aabb::new(lo - by, hi + by)
+}
+
 fn by_surface_area(boxes: &[Bounds]) -> Option<BinaryTree> {
-    let aabbs: Vec<Aabb> =
-        boxes.iter().map(|b| Aabb::new(Vec3A::from_array(b.lo), Vec3A::from_array(b.hi))).collect();
+    let aabbs: Vec<Aabb> = boxes.iter().enumerate().map(|(i, b)| widened(i as u32, b)).collect();
     let params = BvhBuildParams {
         pre_split: false,
         ploc_search_distance: PlocSearchDistance::Medium,

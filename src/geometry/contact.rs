@@ -5,7 +5,7 @@
 //! its own body's face first, then stands in the film, before the other face. Where they are glued there is no film, and
 //! both are crossed at once, as are faces that look the same way.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
 
@@ -15,6 +15,7 @@ use super::nearly::{Near, Nearly};
 use super::ray::Ray;
 use super::triangle::View;
 use super::{Body, Info, Shape, Surface, SurfaceId};
+use crate::error::{Diagnostic, Kind, Result};
 
 /// How a surface behaves towards those that it touches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,31 +54,52 @@ pub(super) struct Contacts {
     partners: Vec<Partner>,
     pairs: Vec<Contact>,
     /// Pairs of transparent closed surfaces that cut each other; twice the same for one that cuts itself.
-    cuts: Vec<[SurfaceId; 2]>,
+    cuts: BTreeSet<[SurfaceId; 2]>,
     /// Transparent closed surfaces, and opaque ones that cut them.
-    solid_cuts: Vec<[SurfaceId; 2]>,
+    solid_cuts: BTreeSet<[SurfaceId; 2]>,
     /// Faces that all but touch.
     near: Vec<Near>,
 }
 
+/// Most pairs of faces whose boxes meet, of those that are looked at, beside so many a face: about a minute. Of long faces in one
+/// place every one meets every other.
+pub const MOST_PAIRS: u64 = 1 << 28;
+const PAIRS_A_FACE: u64 = 64;
+/// Most contacts, likewise: a gigabyte.
+pub const MOST_CONTACTS: u64 = 1 << 24;
+const CONTACTS_A_FACE: u64 = 16;
+/// Boxes compared for each pair that may meet.
+const STEPS_A_PAIR: u64 = 8;
+
 impl Contacts {
     /// The contacts of surfaces bound in these ways; none are looked for without bonds. The tree is that over the boxes of all
     /// primitives, as wide as [`super::nearly`] wants them, whose surfaces are `owner`.
+    ///
+    /// # Errors
+    /// [`Kind::Limit`] where more faces meet than [`MOST_PAIRS`] and [`MOST_CONTACTS`] allow.
     pub fn find(
         surfaces: &[Surface],
         info: &[Info],
         bonds: &[Bond],
         (tree, boxes, owner): (&BinaryTree, &[Bounds], &[u32]),
-    ) -> Self {
+    ) -> Result<Self> {
         if bonds.is_empty() || tree.order.is_empty() {
-            return Self::default();
+            return Ok(Self::default());
         }
+        let faces = boxes.len() as u64;
+        let (most_pairs, most_contacts) =
+            (MOST_PAIRS + PAIRS_A_FACE * faces, MOST_CONTACTS + CONTACTS_A_FACE * faces);
+        let (mut pairs, mut contacts) = (0u64, 0u64);
         let (mut found, mut nearly) = (Self::default(), Nearly::new(surfaces, info));
         // Of a body and a face of an opaque surface: the sides from which the body's faces touch it.
         let mut sides: BTreeMap<(u32, u32), [bool; 2]> = BTreeMap::new();
         let is_body = |s: u32| bonds[s as usize].is_clear && info[s as usize].body != Body::Open;
-        pairs_of_boxes((tree, boxes, owner), is_body, |p, q| {
+        pairs_of_boxes((tree, boxes, owner), is_body, STEPS_A_PAIR * most_pairs, |p, q| {
             let (s, t) = (owner[p as usize], owner[q as usize]);
+            pairs += 1;
+            if pairs > most_pairs || contacts > most_contacts {
+                return Err(too_many([s, t].map(|s| &surfaces[s as usize].name[..])));
+            }
             let shape = |s: u32| &surfaces[s as usize].shape;
             let face = |p: u32, s: u32| (p - info[s as usize].first_primitive) as usize;
             let facing = match (shape(s).triangle(face(p, s)), shape(t).triangle(face(q, t))) {
@@ -85,7 +107,7 @@ impl Contacts {
                     // Neighbours in a mesh do not cut each other.
                     let are_neighbours = s == t && a.iter().any(|v| b.contains(v));
                     if is_body(s) && is_body(t) && !are_neighbours && cut(&a, &b) {
-                        found.cuts.push([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
+                        found.cuts.insert([SurfaceId(s.min(t)), SurfaceId(s.max(t))]);
                     }
                     for ([body, solid], [of_body, of_solid], face) in
                         [([s, t], [&a, &b], q), ([t, s], [&b, &a], p)]
@@ -98,11 +120,14 @@ impl Contacts {
                         {
                             continue;
                         }
-                        let side = touches_from(of_body, of_solid);
-                        let seen = sides.entry((body, face)).or_default();
-                        side.into_iter().for_each(|side| seen[usize::from(side)] = true);
-                        if *seen == [true; 2] || cut(of_body, of_solid) {
-                            found.solid_cuts.push(pair);
+                        let is_through = touches_from(of_body, of_solid).is_some_and(|side| {
+                            contacts += 1;
+                            let seen = sides.entry((body, face)).or_default();
+                            seen[usize::from(side)] = true;
+                            *seen == [true; 2]
+                        });
+                        if is_through || cut(of_body, of_solid) {
+                            found.solid_cuts.insert(pair);
                         }
                     }
                     let facing = facing(&a, &b);
@@ -114,7 +139,8 @@ impl Contacts {
                 (None, None) => coincide(shape(s), shape(t)).then_some(false),
                 _ => None,
             };
-            let Some(facing) = facing else { return };
+            let Some(facing) = facing else { return Ok(()) };
+            contacts += 2;
             let is_glued = s == t || bonds[s as usize].is_glued || bonds[t as usize].is_glued;
             let is_joint = !facing || is_glued;
             for (primitive, other, surface) in [(p, q, t), (q, p, s)] {
@@ -122,14 +148,13 @@ impl Contacts {
             }
             let surfaces = [SurfaceId(s.min(t)), SurfaceId(s.max(t))];
             found.pairs.push(Contact { surfaces, facing });
-        });
+            Ok(())
+        })?;
         found.partners.sort_unstable();
         found.pairs.sort_unstable();
         found.pairs.dedup();
-        found.cuts.sort_unstable();
-        found.cuts.dedup();
         found.near = nearly.finish();
-        found
+        Ok(found)
     }
 
     /// Pairs of surfaces in contact, each once a way.
@@ -139,12 +164,12 @@ impl Contacts {
 
     /// Pairs of transparent closed surfaces that cut each other, by their numbers in order; twice the same for one that cuts
     /// itself.
-    pub fn cuts(&self) -> &[[SurfaceId; 2]] {
+    pub fn cuts(&self) -> &BTreeSet<[SurfaceId; 2]> {
         &self.cuts
     }
 
     /// Transparent closed surfaces, and opaque ones that cut them.
-    pub fn solid_cuts(&self) -> &[[SurfaceId; 2]] {
+    pub fn solid_cuts(&self) -> &BTreeSet<[SurfaceId; 2]> {
         &self.solid_cuts
     }
 
@@ -165,13 +190,30 @@ pub(super) fn covers(triangle: &[DVec3; 3], ray: &Ray) -> Option<super::triangle
     View::new(&triangle.map(|v| v.to_array()), ray).crossing()
 }
 
+/// The refusal of a scene of which too many faces meet, the last of them of these two surfaces.
+fn too_many([a, b]: [&str; 2]) -> Diagnostic {
+    let found = if a == b {
+        format!(
+            "surfaces of which so many faces meet that contacts cannot be looked for, such as those of \"{a}\""
+        )
+    } else {
+        format!(
+            "surfaces of which so many faces meet that contacts cannot be looked for, such as \"{a}\" and \"{b}\""
+        )
+    };
+    let required = format!("at most 2^{} pairs of faces that meet", MOST_PAIRS.trailing_zeros());
+    Diagnostic::new(Kind::Limit, found, required)
+        .hint("leave out surfaces that lie in one another, or split long thin faces")
+}
+
 /// Calls for every pair of primitives of different surfaces (and of one surface with itself where `with_itself` says so)
-/// whose boxes meet.
+/// whose boxes meet, until it is an error. After so many steps that is one, too.
 fn pairs_of_boxes(
     (tree, boxes, owner): (&BinaryTree, &[Bounds], &[u32]),
     with_itself: impl Fn(u32) -> bool,
-    mut call: impl FnMut(u32, u32),
-) {
+    most_steps: u64,
+    mut call: impl FnMut(u32, u32) -> Result<()>,
+) -> Result<()> {
     const MIXED: u32 = u32::MAX;
     // The one surface of a node; children stand behind their parents.
     let mut only = vec![MIXED; tree.nodes.len()];
@@ -188,8 +230,13 @@ fn pairs_of_boxes(
         only[i] = of.unwrap_or(MIXED);
     }
     let is_dull = |i: usize, j: usize| only[i] == only[j] && only[i] != MIXED && !with_itself(only[i]);
-    let mut work = vec![(0usize, 0usize)];
+    let (mut work, mut steps) = (vec![(0usize, 0usize)], 0u64);
     while let Some((i, j)) = work.pop() {
+        steps += 1;
+        if steps > most_steps {
+            let found = "surfaces whose faces are so near to each other that contacts cannot be looked for";
+            return Err(Diagnostic::new(Kind::Limit, found, "surfaces apart from each other"));
+        }
         let (a, b) = (&tree.nodes[i], &tree.nodes[j]);
         if is_dull(i, j) || !meet(&a.bounds, &b.bounds) {
             continue;
@@ -205,7 +252,7 @@ fn pairs_of_boxes(
                             && (s != t || with_itself(s))
                             && meet(&boxes[p as usize], &boxes[q as usize])
                         {
-                            call(p, q);
+                            call(p, q)?;
                         }
                     }
                 }
@@ -221,6 +268,7 @@ fn pairs_of_boxes(
             }
         }
     }
+    Ok(())
 }
 
 fn meet(a: &Bounds, b: &Bounds) -> bool {

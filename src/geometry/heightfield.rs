@@ -35,6 +35,17 @@ pub enum Formula {
     Image(HeightImage),
 }
 
+impl Formula {
+    /// Waves or octaves that are summed up at each vertex; none of an image.
+    pub fn terms(&self) -> u64 {
+        match self {
+            Self::Waves(waves) => waves.len() as u64,
+            Self::Noise(noise) => noise.octaves() as u64,
+            Self::Image(_) => 0,
+        }
+    }
+}
+
 /// Which way the outward normal points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Facing {

@@ -35,10 +35,14 @@ mod triangle;
 mod whereabouts;
 mod wide;
 
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 
 pub use box_mesh::box_mesh;
 use contact::Contacts;
+#[cfg(feature = "internals")]
+pub use contact::MOST_PAIRS;
 pub use contact::{Bond, Contact};
 pub use height_image::{HEIGHT, HeightImage};
 pub use heightfield::{CELLS_REQUIRED, Facing, Formula, Heightfield, MOST_CELLS, Wave};
@@ -204,7 +208,7 @@ impl Geometry {
                 let (l, h) = world(s, primitive - info[i as usize].first_primitive as usize);
                 *bounds = normalisation.bounds(l - reach, h + reach);
             }
-            Contacts::find(&surfaces, &info, bonds, (&binary.with_boxes(&boxes), &boxes, &owner))
+            Contacts::find(&surfaces, &info, bonds, (&binary.with_boxes(&boxes), &boxes, &owner))?
         };
         for contact in contacts.pairs() {
             contact.surfaces.iter().for_each(|s| info[s.0 as usize].touches = true);
@@ -263,12 +267,12 @@ impl Geometry {
 
     /// Pairs of transparent closed surfaces whose faces cut each other, the lower number first; twice the same for one that
     /// cuts itself.
-    pub fn cuts(&self) -> &[[SurfaceId; 2]] {
+    pub fn cuts(&self) -> &BTreeSet<[SurfaceId; 2]> {
         self.contacts.cuts()
     }
 
     /// Clear bodies and opaque surfaces whose triangles cut each other.
-    fn solid_cuts(&self) -> &[[SurfaceId; 2]] {
+    fn solid_cuts(&self) -> &BTreeSet<[SurfaceId; 2]> {
         self.contacts.solid_cuts()
     }
 

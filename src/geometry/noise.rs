@@ -34,6 +34,11 @@ pub const RELATIVE: Interval = Interval { low: 0.0, high: 1e9, words: "a relativ
 pub const MOST_OCTAVES: usize = 32;
 
 impl Noise {
+    /// Number of octaves.
+    pub fn octaves(&self) -> usize {
+        self.octaves.len()
+    }
+
     /// A noise of these octaves whose amplitudes sum to `amplitude_m` (m).
     ///
     /// # Errors

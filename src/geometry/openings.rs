@@ -22,6 +22,9 @@ pub fn part_of(vertices: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
 /// Open edges whose ends are nearer than this share of the mesh's size face each other across a crack.
 const OF_ONE_PLACE: f64 = 1e-5;
 
+/// Vertices that are kept of each such place.
+const MOST_OF_ONE_PLACE: usize = 16;
+
 /// The area that directed edges span, m2: of those that hang together half the sum of cross products, which for a loop is
 /// that of any surface in it, seen from where it is largest. What is next to each other hangs together, so that the two sides
 /// of a crack cancel, even if they are loops by themselves.
@@ -46,8 +49,8 @@ pub fn opening(vertices: &[DVec3], edges: &[[u32; 2]]) -> f64 {
             }
         }
         let here = places.entry(cell(*v)).or_default();
-        // Each vertex is the end of several edges.
-        if !here.contains(v) {
+        // Each vertex is the end of several edges. Where many are in one place, what is near to one is near to these.
+        if here.len() < MOST_OF_ONE_PLACE && !here.contains(v) {
             here.push(*v);
         }
     }

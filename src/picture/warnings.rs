@@ -34,13 +34,12 @@ const PROBE: u32 = 64;
 ///
 /// # Errors
 /// A camera that sees nothing.
-pub fn probe(scene: &Scene) -> Result<Vec<Warning>> {
+pub fn probe(scene: &Scene, interrupt: &AtomicBool) -> Result<Vec<Warning>> {
     let Some(camera) = &scene.camera else { return Ok(Vec::new()) };
     let pixels = camera.pixels.map(|n| n.min(PROBE));
     let camera = Camera::new(CameraSpec { pixels, samples: 1, ..CameraSpec::clone(camera) })?;
     let (view, mut sums) = (View::new(scene, &camera, 0)?, Sums::<3>::new(pixels)?);
-    let never = AtomicBool::new(false);
-    let Rendered { paths, contradicted, .. } = render(&view, &Pass::EMISSION, &mut sums, &never, &|_| {})?;
+    let Rendered { paths, contradicted, .. } = render(&view, &Pass::EMISSION, &mut sums, interrupt, &|_| {})?;
     let summary = PictureSummary {
         eye_paths: paths,
         eye_paths_contradicted: contradicted,

@@ -1,7 +1,7 @@
 //! Clear bodies that are not what they look like: of an index below that of air, in a body of their own index,
 //! with faces given twice, cut by something opaque, glued to nothing.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec3;
 
@@ -13,6 +13,8 @@ use super::{Joint, Scene, SurfaceOptions};
 
 /// Points looked at of a body.
 const POINTS: usize = 32;
+/// Pairs that cut each other, of those that are told.
+const MOST_CUTS: usize = 1000;
 
 /// What is to be said of the bodies of a scene.
 pub(super) fn warnings(scene: &Scene, options: &[SurfaceOptions]) -> Vec<Warning> {
@@ -25,11 +27,17 @@ pub(super) fn warnings(scene: &Scene, options: &[SurfaceOptions]) -> Vec<Warning
     all.extend(ids().filter(is_body).filter_map(|s| nested_in_the_same(scene, &bounds, s)));
     all.extend(ids().filter(is_body).filter_map(|s| nested_part(scene, s)));
     all.extend(clear().filter_map(|s| doubled_faces(scene, s)));
-    all.extend(ids().filter(is_body).flat_map(|body| {
+    let near: BTreeSet<_> = scene.geometry.nearly().iter().map(|near| near.surfaces).collect();
+    let cuts = ids().filter(is_body).flat_map(|body| {
         let solid = ids().filter(|s| scene.media.role(*s) == Role::Solid);
-        solid.filter_map(move |solid| cut(scene, body, solid))
-    }));
-    all.extend(ids().filter_map(|s| glued_to_nothing(scene, options, s)));
+        let near = &near;
+        solid.filter_map(move |solid| cut(scene, near, body, solid))
+    });
+    all.extend(cuts.take(MOST_CUTS));
+    let contacts = scene.geometry.contacts().iter().map(|contact| contact.surfaces);
+    let touching: BTreeSet<SurfaceId> =
+        contacts.filter(|[a, b]| a != b).chain(near.iter().copied()).flatten().collect();
+    all.extend(ids().filter(|s| !touching.contains(s)).filter_map(|s| glued_to_nothing(scene, options, s)));
     all
 }
 
@@ -172,11 +180,9 @@ fn both_ways(mesh: &Mesh) -> usize {
 }
 
 /// Something opaque that passes through the walls of a body.
-fn cut(scene: &Scene, body: SurfaceId, solid: SurfaceId) -> Option<Warning> {
-    let geometry = &scene.geometry;
-    let is_pair = |s: &[SurfaceId; 2]| s.contains(&body) && s.contains(&solid);
+fn cut(scene: &Scene, near: &BTreeSet<[SurfaceId; 2]>, body: SurfaceId, solid: SurfaceId) -> Option<Warning> {
     // What is sunk by rounding is told by itself.
-    if geometry.nearly().iter().any(|near| is_pair(&near.surfaces)) || !geometry.is_cut_by(body, solid) {
+    if near.contains(&[body.min(solid), body.max(solid)]) || !scene.geometry.is_cut_by(body, solid) {
         return None;
     }
     let [body, solid] = [body, solid].map(|s| scene.geometry.name(s).to_owned());
@@ -195,14 +201,9 @@ fn cut(scene: &Scene, body: SurfaceId, solid: SurfaceId) -> Option<Warning> {
     })
 }
 
-/// A surface that says it is glued, and touches nothing.
+/// A surface that touches nothing, and says it is glued.
 fn glued_to_nothing(scene: &Scene, options: &[SurfaceOptions], surface: SurfaceId) -> Option<Warning> {
-    let touches = |pair: [SurfaceId; 2]| pair.contains(&surface) && pair[0] != pair[1];
-    let geometry = &scene.geometry;
-    if options[surface.0 as usize].contact != Some(Joint::Glued)
-        || geometry.contacts().iter().any(|contact| touches(contact.surfaces))
-        || geometry.nearly().iter().any(|near| touches(near.surfaces))
-    {
+    if options[surface.0 as usize].contact != Some(Joint::Glued) {
         return None;
     }
     let name = scene.geometry.name(surface).to_owned();

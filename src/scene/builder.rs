@@ -12,7 +12,7 @@ use crate::surface::Material;
 use super::camera::Camera;
 use super::media::{Media, Medium};
 use super::options::SurfaceOptions;
-use super::receiver::{Cells, MOST_CELLS, Receiver, ReceiverSpec};
+use super::receiver::{MOST_CELLS, Receiver, ReceiverSpec};
 use super::{Identity, Scene, check, contacts, endless, found};
 
 #[derive(Debug)]
@@ -164,20 +164,20 @@ impl SceneBuilder {
         let mut media = Media::new(ambient, &geometry, &materials, &options);
         let (mut receivers, mut cells) = (Vec::new(), 0u64);
         for (spec, place) in &self.receivers {
-            let before = cells;
             match Receiver::new(spec, &geometry) {
                 Ok(receiver) => {
-                    cells +=
-                        if let Cells::Grid { .. } = receiver.cells { receiver.cells.len() as u64 } else { 0 };
+                    cells += receiver.cells.len() as u64;
                     cells += receiver.grid.map_or(0, |grid| grid.cells() as u64);
                     receivers.push(receiver);
                 }
                 Err(e) => errors.push(e.placed(*place)),
             }
-            if before <= MOST_CELLS && cells > MOST_CELLS {
+            // Those after it would take memory for nothing.
+            if cells > MOST_CELLS {
                 let found = format!("the receiver `{}`, with which there are {cells} cells", spec.name());
                 let required = "at most 2^26 cells in all receivers of a scene";
                 errors.push(Diagnostic::new(Kind::Limit, found, required).placed(*place));
+                break;
             }
         }
         let (mut emitter_names, mut emitters, mut emitter_colours) = (Vec::new(), Vec::new(), Vec::new());

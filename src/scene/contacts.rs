@@ -1,11 +1,16 @@
 //! Surfaces in one place, bodies in one another: what is refused, and what is taken.
 
+use std::collections::BTreeSet;
+
 use crate::error::{Diagnostic, Kind};
 use crate::geometry::{Contact, Geometry, SurfaceId};
 use crate::surface::Material;
 
 use super::facets;
 use super::options::{Joint, SurfaceOptions};
+
+/// Pairs that are told. Of thousands of surfaces in one place there are millions.
+const MOST_FOUND: usize = 1000;
 
 /// What was found about a pair of surfaces, to be said where the second of them stands in the scene.
 pub(super) type Finding = (SurfaceId, Diagnostic);
@@ -21,7 +26,7 @@ pub(super) fn errors(
     let name = |s: SurfaceId| geometry.name(s);
     let volume = |s: SurfaceId| geometry.surfaces()[at(s)].shape.volume_m3();
     let mut found = Vec::new();
-    let mut refused: Vec<[SurfaceId; 2]> = Vec::new();
+    let mut refused = BTreeSet::new();
     for Contact { surfaces: [a, b], facing } in
         geometry.contacts().iter().copied().filter(|c| c.surfaces[0] != c.surfaces[1])
     {
@@ -31,7 +36,7 @@ pub(super) fn errors(
             let pair = format!("surfaces \"{}\" and \"{}\" in the same place", name(a), name(b));
             let e = Diagnostic::new(Kind::Geometry, pair, "surfaces that do not coincide");
             found.push((b, e.hint("leave one of them out, or move them apart")));
-            refused.push([a, b]);
+            refused.insert([a, b]);
         } else if !facing
             && is_body(a)
             && is_body(b)
@@ -45,7 +50,10 @@ pub(super) fn errors(
                 "a different `priority` of each: the body of the higher one fills the space",
             );
             found.push((b, e.hint("leave one of them out, or give one of them `priority = 1`")));
-            refused.push([a, b]);
+            refused.insert([a, b]);
+        }
+        if found.len() >= MOST_FOUND {
+            return found;
         }
     }
     let bodies: Vec<SurfaceId> = (0..materials.len() as u32).map(SurfaceId).filter(|s| is_body(*s)).collect();
@@ -62,6 +70,9 @@ pub(super) fn errors(
             let hint =
                 format!("give the one that fills the common space `priority = 1`, say \"{}\"", name(b));
             found.push((b, Diagnostic::new(Kind::Geometry, pair, required).hint(hint)));
+            if found.len() >= MOST_FOUND {
+                return found;
+            }
         }
     }
     found
@@ -97,7 +108,7 @@ pub(super) fn warnings(
         });
     let clear = (0..materials.len() as u32).map(SurfaceId).filter(|s| materials[at(*s)].is_transparent());
     let faceted = clear.filter_map(|s| Some((s, facets::warning(&geometry.surfaces()[at(s)])?)));
-    of_pairs.chain(faceted).collect()
+    of_pairs.take(MOST_FOUND).chain(faceted).collect()
 }
 
 /// Whether a surface is joined to all that it touches.

@@ -376,8 +376,8 @@ fn eye_paths_that_are_contradicted_are_counted_and_told() {
     assert!((found.share.unwrap() - exact).abs() < 0.01, "{found}");
     assert!(found.message.contains("of all eye paths") && found.remedy.contains("`medium`"), "{found}");
     // A probe of fewer pixels sees the same.
-    let probed = caustix::picture::probe(&scene).unwrap();
+    let probed = caustix::picture::probe(&scene, &AtomicBool::new(false)).unwrap();
     assert!((probed[0].share.unwrap() - exact).abs() < 0.02, "{probed:?}");
     let right = crate::support::scenes::scene(&pond("medium = \"water\"\n"));
-    assert_eq!(caustix::picture::probe(&right).unwrap(), []);
+    assert_eq!(caustix::picture::probe(&right, &AtomicBool::new(false)).unwrap(), []);
 }

@@ -20,3 +20,5 @@ mod result_set_cut;
 mod results_kept;
 mod sample;
 mod shell;
+#[cfg(unix)]
+mod strangers;

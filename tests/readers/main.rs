@@ -33,4 +33,6 @@ mod scene_errors;
 mod scene_limits;
 mod scene_own;
 mod scene_shape_errors;
+mod scene_strangers;
 mod scene_tabulated;
+mod survivors;

@@ -55,6 +55,9 @@ pub struct CompareArgs {
     /// Threads [default: all cores]. The errors do not depend on it.
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_THREADS as u64 }>)]
     pub threads: Option<u32>,
+    /// Read files at or below the scene's folder alone, links followed: for scenes from strangers.
+    #[arg(long)]
+    pub confine: bool,
     /// No progress bar and no table.
     #[arg(long)]
     pub quiet: bool,
@@ -62,7 +65,7 @@ pub struct CompareArgs {
 
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &CompareArgs) -> Done {
-    let (scene, _) = load(args.scene.as_deref(), args.quiet)?;
+    let (scene, _) = load(args.scene.as_deref(), args.confine, args.quiet)?;
     warn(&scene.warnings);
     if scene.compared_reflections.is_some() { room::run(args, &scene) } else { study::run(args, &scene) }
 }

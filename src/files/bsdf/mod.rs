@@ -14,7 +14,6 @@ use std::path::Path;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::bsdf::words::Words;
 use crate::files::bytes::{check_length, read_capped};
-use crate::files::excerpt::quoted;
 use crate::files::kinds::{Use, ZEMAX, instead};
 use crate::scattering::ScatterTable;
 
@@ -58,8 +57,10 @@ impl Format {
             Some("bsdf") => Ok(Self::Zemax),
             Some("xml") => Ok(Self::Klems),
             Some("binary") => Ok(Self::Merl),
+            // Not even its first word is repeated: the file may be anybody's.
             _ => {
-                let found = first.map_or("a file without a word".to_owned(), |w| quoted(w.text));
+                let found =
+                    if first.is_some() { "a file of another format" } else { "a file without a word" };
                 Err(Diagnostic::new(Kind::Unknown, found, required).at(1, 1).in_file(name))
             }
         }

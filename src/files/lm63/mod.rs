@@ -38,7 +38,7 @@ use std::rc::Rc;
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// Gives the bytes of the tilt file of this name, which has no folder.
-pub(crate) type TiltFile<'a> = &'a mut dyn FnMut(&str) -> Result<Rc<[u8]>>;
+pub type TiltFile<'a> = &'a mut dyn FnMut(&str) -> Result<Rc<[u8]>>;
 
 /// Reads a photometric file; a tilt file is looked for beside it.
 ///
@@ -63,7 +63,7 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
 }
 
 /// The same where tilt files can be had.
-pub(crate) fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result<Photometry> {
+pub fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result<Photometry> {
     check_length(bytes, MAX_FILE_BYTES).map_err(|d| d.in_file(name))?;
     let mut photometry = parse_text(&decode(bytes), tilt).map_err(|d| {
         let other = instead(bytes, Use::Photometric, "an IES LM-63 file (.ies)", name);

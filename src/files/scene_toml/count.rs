@@ -1,6 +1,7 @@
 //! Counts as people write them: `4_456_448`, `4.5e6`, `2^22`.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::visible;
 
 /// Largest count that is accepted: 2^48, about 2.8e14. At a million photons a second that is nine years.
 pub const LARGEST_COUNT: u64 = 1 << 48;
@@ -22,7 +23,7 @@ pub const COUNT_REQUIRED: &str = "a whole number from 1 to 2^48, written like 4_
 pub fn parse_count(text: &str) -> Result<u64> {
     value(text.trim()).map_err(|(kind, why)| {
         let shown: String = text.chars().take(40).collect();
-        let error = Diagnostic::new(kind, format!("`{shown}`{why}"), COUNT_REQUIRED);
+        let error = Diagnostic::new(kind, format!("`{}`{why}", visible(&shown)), COUNT_REQUIRED);
         match meant(text.trim()) {
             Some(meant) => error.hint(format!("write {meant}")),
             None => error,

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::asked::What;
 use super::loader::{Make, made};
 use super::names::Names;
 use super::numbers::DIRECTION;
@@ -16,15 +17,15 @@ use crate::files::suggest;
 use crate::geometry::{COORDINATE, LENGTH};
 
 /// What makes an emitter of its table, its position (m) and its flux (lm), where these are given and good.
-type Reader = fn(&mut Table<'_, '_>, Option<DVec3>, Option<f64>) -> Option<Make<Emitter>>;
+type Reader = fn(&mut Table<'_, '_>, &str, Option<DVec3>, Option<f64>) -> Option<Make<Emitter>>;
 
 /// The types, each with what messages call it and its reader.
 const TYPES: [(&str, (&str, Reader)); 5] = [
     ("photometric", ("a photometric [[emitter]]", read_photometric)),
-    ("isotropic", ("an isotropic [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_isotropic))),
-    ("collimated", ("a collimated [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_beam))),
-    ("panel", ("a panel [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_panel))),
-    ("disc", ("a disc [[emitter]]", |t, p, lm| of_flux(t, p, lm, read_disc))),
+    ("isotropic", ("an isotropic [[emitter]]", |t, _, p, lm| of_flux(t, p, lm, read_isotropic))),
+    ("collimated", ("a collimated [[emitter]]", |t, _, p, lm| of_flux(t, p, lm, read_beam))),
+    ("panel", ("a panel [[emitter]]", |t, _, p, lm| of_flux(t, p, lm, read_panel))),
+    ("disc", ("a disc [[emitter]]", |t, _, p, lm| of_flux(t, p, lm, read_disc))),
 ];
 
 pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) -> Option<EmitterPart> {
@@ -38,7 +39,7 @@ pub(super) fn read(mut table: Table<'_, '_>, index: usize, names: &mut Names) ->
     let flux_lm = table.number("flux_lm", &FLUX);
     let colour = read_colour(&mut table);
     let medium_name = table.text("medium");
-    let make = reader(&mut table, position, flux_lm);
+    let make = reader(&mut table, &name.value, position, flux_lm);
     table.finish();
     Some(EmitterPart { name: name.value, colour: colour?, make: make?, medium_name, medium: None })
 }
@@ -61,15 +62,17 @@ fn read_isotropic(table: &mut Table<'_, '_>, light: Light) -> Option<Emitter> {
 
 fn read_photometric(
     table: &mut Table<'_, '_>,
+    name: &str,
     position: Option<DVec3>,
     flux_lm: Option<f64>,
 ) -> Option<Make<Emitter>> {
     let file = table.path("file");
     let frame = read_frame(table)?;
-    let (file, position) = (file?, position?);
+    let (file, position, name) = (file?, position?, name.to_owned());
     Some(Box::new(move |loader| {
-        let photometry = loader.photometry(&file)?;
-        let emitter = Photometric::new(&photometry, position, frame, flux_lm);
+        let (photometry, _) = &*loader.photometry(&file)?;
+        loader.asked.count(What::Candela, &name, photometry.web.candela.len() as u64)?;
+        let emitter = Photometric::new(photometry, position, frame, flux_lm);
         Ok(Emitter::Photometric(emitter.map_err(|e| Diagnostic::from(e).in_file(loader.path(&file)))?))
     }))
 }

@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
+use super::asked::{Asked, What};
 use super::loader::{Loader, Make};
-use super::table::{Placed, Table, shown};
+use super::table::{Placed, Table};
 use crate::error::words::limit;
 use crate::error::{Diagnostic, Kind};
 use crate::files::height_image;
@@ -14,17 +15,18 @@ use crate::geometry::{
 };
 use crate::scene::steps::Steps;
 
-/// Most cells of all heightfields of a scene: 2^24, about eight gigabytes of triangles and search structure.
-const MOST_CELLS_TOGETHER: u64 = 1 << 24;
 const MOST_WAVES: usize = 256;
 
 const FACING: [(&str, Facing); 2] = [("up", Facing::Up), ("down", Facing::Down)];
 
 const RELIEFS: [&str; 3] = ["waves", "noise", "image"];
 
-/// The heightfield. Its cells are added to `all`, those of the scene, which have a cap. An image without cells counts as none: its
-/// file has a cap of its own.
-pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Option<Make<Shape>> {
+/// The heightfield, and what counts the pixels of its image, and its cells where that says how many. Other cells are counted here.
+pub(super) fn read(
+    table: &mut Table<'_, '_>,
+    name: &str,
+    asked: &mut Asked,
+) -> Option<(Make<Shape>, Option<Make<()>>)> {
     table.call("a heightfield");
     let origin = table.needed_vector("origin", &COORDINATE, "[x, y, z] of its corner in metres");
     let extents = "[extent along x, extent along y] in metres";
@@ -44,9 +46,11 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
         }
         ["image"] => {
             let (file, heights) = image?;
-            let [nx, ny] = cells.unwrap_or([0; 2]).map(u64::from);
-            count(table, name, nx * ny, all);
-            Some(Box::new(move |loader: &mut Loader| {
+            if let Some([nx, ny]) = cells {
+                count(table, name, u64::from(nx) * u64::from(ny), 0, asked);
+            }
+            let ask = count_image(name.to_owned(), file.clone(), cells.is_some());
+            let make: Make<Shape> = Box::new(move |loader: &mut Loader| {
                 let bytes = loader.bytes(&file)?;
                 let image = height_image::parse(&bytes, heights).map_err(|e| {
                     let name = loader.path(&file).display().to_string();
@@ -73,15 +77,17 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
                     distance_m: between(0, columns).min(between(1, rows)),
                 });
                 Ok(field.facing(facing).smooth(smooth).mesh()?.into())
-            }))
+            });
+            Some((make, Some(ask)))
         }
         [one] => {
             let cells = table.needed("cells", CELLS_REQUIRED, |_, _| cells)?;
-            let formula = if one == "waves" { formula } else { noise };
-            let field = table.accept(Heightfield::new(origin, size, cells, formula?))?;
+            let formula = if one == "waves" { formula } else { noise }?;
+            let terms = formula.terms();
+            let field = table.accept(Heightfield::new(origin, size, cells, formula))?;
             let field = field.facing(facing).smooth(smooth);
-            count(table, name, field.cell_count(), all);
-            Some(Box::new(move |_: &mut Loader| Ok(field.mesh()?.into())))
+            count(table, name, field.cell_count(), terms, asked);
+            Some((Box::new(move |_: &mut Loader| Ok(field.mesh()?.into())), None))
         }
         [_, second, ..] => {
             table.error(second, Kind::Range, "one of waves, noise and image, not several");
@@ -90,15 +96,31 @@ pub(super) fn read(table: &mut Table<'_, '_>, name: &str, all: &mut u64) -> Opti
     }
 }
 
-/// Refuses heightfields that are each small enough but not together: an error at the first that is too much.
-fn count(table: &Table<'_, '_>, name: &str, cells: u64, all: &mut u64) {
-    let before = *all;
-    *all += cells;
-    if before <= MOST_CELLS_TOGETHER && *all > MOST_CELLS_TOGETHER {
-        let found = format!("the heightfield `{}`, with which there are {all} cells", shown(name));
-        let required = "at most 2^24 cells in all heightfields of a scene";
-        table.document().error_at(table.place(), Kind::Limit, found, required);
+/// Counts cells of so many terms each: an error where it is too much, and none of what follows it.
+fn count(table: &Table<'_, '_>, name: &str, cells: u64, terms: u64, asked: &mut Asked) {
+    let was_over = asked.is_over();
+    let counted = [(What::Cells, cells), (What::Triangles, 2 * cells), (What::Terms, cells * terms)]
+        .into_iter()
+        .try_for_each(|(what, number)| asked.count(what, name, number));
+    if let Some(error) = counted.err().filter(|_| !was_over) {
+        table.document().error(|| error.placed(Some(table.place())));
     }
+}
+
+/// What looks at the size of an image, before anything is made of it.
+fn count_image(name: String, file: Placed<String>, has_cells: bool) -> Make<()> {
+    Box::new(move |loader: &mut Loader| {
+        let (_, bytes) = loader.look(&file)?;
+        let [columns, rows] = height_image::size(&bytes).map_err(|e| e.in_file(loader.path(&file)))?;
+        loader.asked.count(What::Pixels, &name, columns * rows)?;
+        let cells = columns.saturating_sub(1) * rows.saturating_sub(1);
+        // One that is too large by itself is told so when it is made.
+        if !has_cells && cells <= MOST_CELLS {
+            loader.asked.count(What::Cells, &name, cells)?;
+            loader.asked.count(What::Triangles, &name, 2 * cells)?;
+        }
+        Ok(())
+    })
 }
 
 fn read_waves(table: &mut Table<'_, '_>) -> Option<Vec<Wave>> {

@@ -1,14 +1,18 @@
 //! What makes the parts of a scene that need its files.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use super::asked::Asked;
 use super::syntax::BACKSLASH;
 use super::table::Placed;
 use crate::error::{Diagnostic, Result};
 use crate::files::bytes::Files;
-use crate::files::lm63;
+use crate::files::obj::{Checked, check_obj};
+use crate::files::{bsdf, lm63};
 use crate::photometry::Photometry;
+use crate::scattering::ScatterTable;
 use crate::scene::steps::Steps;
 
 /// Makes a part of a scene; whatever it says of itself has been checked when its table was read.
@@ -22,6 +26,9 @@ pub(crate) fn made<T: 'static>(part: T) -> Make<T> {
     Box::new(move |_| Ok(part))
 }
 
+/// What files hold, or what is wrong with them, by the numbers of the files: each is looked at once.
+type Known<T> = HashMap<usize, Result<Rc<T>>>;
+
 /// The files of a scene, and what is odd about them.
 #[derive(Debug)]
 pub(crate) struct Loader {
@@ -31,9 +38,25 @@ pub(crate) struct Loader {
     pub warnings: Vec<Diagnostic>,
     /// The steps of the heightfield that was made last, where its image has few.
     pub steps: Option<Steps>,
+    /// What its parts ask for together.
+    pub asked: Asked,
+    /// Photometric files, with the tilt files that they name.
+    lamps: Known<(Photometry, Vec<String>)>,
+    tables: Known<ScatterTable>,
+    meshes: Known<Checked>,
 }
 
 impl Loader {
+    pub fn new(name: String, files: Files, asked: Asked) -> Self {
+        let (lamps, tables, meshes) = (Known::new(), Known::new(), Known::new());
+        Self { name, files, warnings: Vec::new(), steps: None, asked, lamps, tables, meshes }
+    }
+
+    /// Whether more was asked for than there may be, so that nothing more is to be made.
+    pub fn is_over(&self) -> bool {
+        self.asked.is_over() || self.files.is_over()
+    }
+
     /// The bytes of a file; errors point to where it is named.
     pub fn bytes(&mut self, file: &Placed<String>) -> Result<Rc<[u8]>> {
         self.files.load(&file.value).map_err(|e| self.at_name(file, e))
@@ -44,16 +67,57 @@ impl Loader {
         self.files.path(&file.value)
     }
 
-    /// A photometric file; a tilt file is looked for beside it.
-    pub fn photometry(&mut self, file: &Placed<String>) -> Result<Photometry> {
+    /// The same, before a part is made of them, and the number of the file.
+    pub fn look(&mut self, file: &Placed<String>) -> Result<(usize, Rc<[u8]>)> {
+        self.files.look(&file.value).map_err(|e| self.at_name(file, e))
+    }
+
+    /// A photometric file; a tilt file is looked for beside it. What is odd about it is told of the first lamp that names it.
+    pub fn photometry(&mut self, file: &Placed<String>) -> Result<Rc<(Photometry, Vec<String>)>> {
+        let (number, _) = self.look(file)?;
         let bytes = self.bytes(file)?;
+        if let Some(known) = self.lamps.get(&number) {
+            let known = known.clone()?;
+            // A lamp's tilt file is a file of that lamp, too.
+            known.1.iter().try_for_each(|tilt| self.files.load(tilt).map(drop))?;
+            return Ok(known);
+        }
         let name = self.path(file).display().to_string();
-        let (folder, files) = (PathBuf::from(&file.value), &mut self.files);
-        let photometry = lm63::parse_with(&bytes, &name, &mut |tilt| {
-            files.load(&folder.with_file_name(tilt).to_string_lossy())
-        })?;
-        self.warnings.extend(photometry.warnings.iter().cloned());
-        Ok(photometry)
+        let (folder, files, mut tilts) = (PathBuf::from(&file.value), &mut self.files, Vec::new());
+        let read = lm63::parse_with(&bytes, &name, &mut |tilt| {
+            let name = folder.with_file_name(tilt).to_string_lossy().into_owned();
+            let bytes = files.load(&name)?;
+            tilts.push(name);
+            Ok(bytes)
+        });
+        let read = read.map(|photometry| Rc::new((photometry, tilts)));
+        self.warnings.extend(read.iter().flat_map(|read| read.0.warnings.iter().cloned()));
+        self.lamps.insert(number, read.clone());
+        read
+    }
+
+    /// A scattering table.
+    pub fn scattering(&mut self, file: &Placed<String>) -> Result<Rc<ScatterTable>> {
+        let (number, _) = self.look(file)?;
+        let bytes = self.bytes(file)?;
+        if let Some(known) = self.tables.get(&number) {
+            return known.clone();
+        }
+        let read = bsdf::parse(&bytes, &self.path(file).display().to_string()).map(Rc::new);
+        self.warnings.extend(read.iter().flat_map(|table| table.warnings.iter().cloned()));
+        self.tables.insert(number, read.clone());
+        read
+    }
+
+    /// The text of a mesh.
+    pub fn obj(&mut self, file: &Placed<String>) -> Result<Rc<Checked>> {
+        let (number, bytes) = self.look(file)?;
+        if let Some(known) = self.meshes.get(&number) {
+            return known.clone();
+        }
+        let checked = check_obj(&bytes, &self.path(file)).map(Rc::new);
+        self.meshes.insert(number, checked.clone());
+        checked
     }
 
     /// The error that a file cannot be opened, if it cannot.

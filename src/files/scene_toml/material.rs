@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
+use super::asked::What;
 use super::loader::{Make, made};
 use super::numbers::{DIRECTION, DIRECTION_REQUIRED};
 use super::part::MaterialPart;
 use super::table::Table;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::bsdf;
 use crate::files::suggest;
 use crate::geometry::{ANGLE, Shape};
 use crate::math::frame::unit;
@@ -29,18 +29,18 @@ struct Aside {
 }
 
 /// What makes a material of its table.
-type Reader = fn(&mut Table<'_, '_>, &mut Aside) -> Option<Make<Material>>;
+type Reader = fn(&mut Table<'_, '_>, &str, &mut Aside) -> Option<Make<Material>>;
 
 /// The types, each with its reader.
 const TYPES: [(&str, Reader); 5] = [
-    ("dielectric", |table, aside| {
+    ("dielectric", |table, _, aside| {
         let dielectric = read_dielectric(table)?;
         aside.ior = Some(dielectric.ior());
         Some(made(Material::Dielectric(dielectric)))
     }),
-    ("mirror", |table, _| read_mirror(table).map(made)),
-    ("lambertian", |table, _| read_lambertian(table).map(made)),
-    ("absorber", |table, _| {
+    ("mirror", |table, _, _| read_mirror(table).map(made)),
+    ("lambertian", |table, _, _| read_lambertian(table).map(made)),
+    ("absorber", |table, _, _| {
         table.call("an absorber");
         Some(made(Material::Absorber))
     }),
@@ -51,7 +51,7 @@ const SIDES: [(&str, Sides); 3] = [("front", Sides::Front), ("back", Sides::Back
 
 const ENERGIES: [(&str, Energy); 2] = [("refuse", Energy::Refuse), ("scale", Energy::Scale)];
 
-pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
+pub(super) fn read(mut table: Table<'_, '_>, name: &str) -> Option<MaterialPart> {
     if table.word_of("type") == Some("conductor") {
         let required =
             format!("{}; conductor is not available yet", suggest::list(&TYPES.map(|(word, _)| word)));
@@ -61,7 +61,7 @@ pub(super) fn read(mut table: Table<'_, '_>) -> Option<MaterialPart> {
     let required = suggest::list_quoted(&TYPES.map(|(word, _)| word));
     let reader = table.needed("type", &required, |t, key| t.word(key, &TYPES))?;
     let mut aside = Aside::default();
-    let make = reader(&mut table, &mut aside);
+    let make = reader(&mut table, name, &mut aside);
     table.finish();
     Some(MaterialPart { make: make?, reference: aside.reference, ior: aside.ior })
 }
@@ -101,7 +101,7 @@ fn read_dielectric(table: &mut Table<'_, '_>) -> Option<Dielectric> {
 }
 
 /// What makes the table.
-fn read_tabulated(table: &mut Table<'_, '_>, aside: &mut Aside) -> Option<Make<Material>> {
+fn read_tabulated(table: &mut Table<'_, '_>, name: &str, aside: &mut Aside) -> Option<Make<Material>> {
     table.call("a tabulated material");
     let file = table.path("file");
     let sides = table.word("side", &SIDES).unwrap_or_default();
@@ -113,12 +113,13 @@ fn read_tabulated(table: &mut Table<'_, '_>, aside: &mut Aside) -> Option<Make<M
     aside.reference = along.and_then(unit);
     let energy = table.word("energy", &ENERGIES).unwrap_or_default();
     let specular_remainder = table.truth("specular_remainder").unwrap_or(false);
-    let file = file?;
+    let (file, called) = (file?, name.to_owned());
     let options = Options { energy, sides, rotation_deg, specular_remainder, ..Options::default() };
     Some(Box::new(move |loader| {
         let name = loader.path(&file).display().to_string();
-        let table = bsdf::parse(&loader.bytes(&file)?, &name)?;
-        loader.warnings.extend(table.warnings.iter().cloned());
+        let table = loader.scattering(&file)?;
+        let values: usize = table.lobes.iter().map(|lobe| lobe.values.len()).sum();
+        loader.asked.count(What::Scattering, &called, values as u64)?;
         // The table is as it should be; that it is laid on a surface here is what the scene can change.
         let (table, found) = Tabulated::new(&table, &options).map_err(|e| {
             let found = format!("{} in \"{}\"", e.found(), file.value);

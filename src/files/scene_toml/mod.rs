@@ -4,6 +4,7 @@
 //! keys to the constructors of what it describes and adds the place to what they refuse. What needs another file is made by
 //! [`SceneFile::build`], when the text is known to be good.
 
+pub mod asked;
 mod camera;
 mod canonical;
 pub mod count;
@@ -26,18 +27,21 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Diagnostic, Kind, Place};
 use crate::files::bytes::{Base, Files, read_capped};
+use crate::files::confine::Confinement;
 use crate::files::kinds::{Use, instead};
 use crate::math::digest::sha256_hex;
 use crate::scene::{Identity, Scene, SceneBuilder};
 use crate::surface::Kind as MaterialKind;
 use document::Document;
 use loader::Loader;
+#[cfg(feature = "internals")]
+pub use parts::MOST_PARTS;
 use parts::Parts;
 pub use parts::RunDefaults;
 use table::Table;
 
 /// Largest scene file that is read: 16 MiB.
-const SCENE_LIMIT_BYTES: u64 = 16 << 20;
+pub const SCENE_LIMIT_BYTES: u64 = 16 << 20;
 
 /// A scene file whose text is good; the files that it names have not been read.
 pub struct SceneFile {
@@ -57,12 +61,29 @@ pub struct SceneFile {
 /// names used twice or not at all, files that are not there. At most `document::MOST_ERRORS`, and one that counts the rest.
 pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
     let path = path.as_ref();
+    read_from(path, Base::Directory(folder_of(path)))
+}
+
+/// The same of a scene that may name only files at or below its own folder, links followed: one from a stranger.
+///
+/// # Errors
+/// Those of [`read`]; a scene file or one it names that lies elsewhere (docs/SECURITY.md).
+pub fn read_confined(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
+    let path = path.as_ref();
+    let confinement = Confinement::of(path).map_err(|e| vec![e.in_file(path)])?;
+    read_from(path, Base::Confined(folder_of(path), confinement))
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().map(PathBuf::from).unwrap_or_default()
+}
+
+fn read_from(path: &Path, base: Base) -> Result<SceneFile, Vec<Diagnostic>> {
     let name = path.display().to_string();
     let bytes = read_capped(path, SCENE_LIMIT_BYTES).map_err(|e| vec![e.in_file(&name)])?;
-    let directory = path.parent().map(PathBuf::from).unwrap_or_default();
     let file = std::str::from_utf8(&bytes)
         .map_err(|e| vec![not_utf8(&bytes, e.valid_up_to(), &name)])
-        .and_then(|text| parse(text, &name, Base::Directory(directory)))
+        .and_then(|text| parse(text, &name, base))
         .map_err(|errors| match instead(&bytes, Use::Scene, "a scene file (TOML)", &name) {
             Some(other) => vec![other],
             None => errors,
@@ -117,7 +138,7 @@ pub fn parse(text: &str, name: &str, base: Base) -> Result<SceneFile, Vec<Diagno
     };
     let parts = Parts::read(Table::new(&document, root.get_ref(), "a scene", Place { line: 1, column: 1 }));
     let warnings = document.finish()?;
-    let loader = Loader { name: name.to_owned(), files: Files::new(base), warnings: Vec::new(), steps: None };
+    let loader = Loader::new(name.to_owned(), Files::new(base), parts.asked.clone());
     Ok(SceneFile { run: parts.run, warnings, text: text.to_owned(), loader, parts })
 }
 
@@ -153,14 +174,30 @@ impl SceneFile {
                 }
                 Err(e) => errors.push(placed(place, e)),
             }
+            if loader.is_over() {
+                return Err(errors);
+            }
         }
         let mut materials = Vec::new();
         for (part, place) in parts.materials.into_iter().flatten() {
             let made = (part.make)(&mut loader).map_err(|e| errors.push(placed(place, e)));
             materials.push(made.ok().map(|material| (material, part.reference)));
+            if loader.is_over() {
+                return Err(errors);
+            }
         }
-        for (part, place) in parts.surfaces.into_iter().flatten() {
-            let made = (part.shape)(&mut loader).and_then(|shape| {
+        // What all surfaces ask for is known before the first is made.
+        let mut surfaces = Vec::new();
+        for (mut part, place) in parts.surfaces.into_iter().flatten() {
+            let counted = part.ask.take().map_or(Ok(()), |ask| ask(&mut loader));
+            if loader.is_over() {
+                errors.extend(counted.err().map(|e| placed(place, e)));
+                return Err(errors);
+            }
+            surfaces.push((part, place, counted));
+        }
+        for (part, place, counted) in surfaces {
+            let made = counted.and_then(|()| (part.shape)(&mut loader)).and_then(|shape| {
                 // A material in error is reported already.
                 let Some((material, reference)) = &materials[part.material] else { return Ok(()) };
                 let material = material::laid_on(material, *reference, &shape)?;

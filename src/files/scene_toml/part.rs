@@ -31,6 +31,8 @@ pub(super) struct SurfacePart {
     pub name: String,
     /// Index of its material.
     pub material: usize,
+    /// What counts what its file asks for.
+    pub ask: Option<Make<()>>,
     pub shape: Make<Shape>,
     /// The word for a shape on which a receiver has a value a face.
     pub of_faces: Option<&'static str>,

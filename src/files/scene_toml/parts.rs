@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use super::asked::Asked;
 use super::document::Document;
 use super::names::Names;
 use super::part::{EmitterPart, MaterialPart, SurfacePart};
@@ -13,7 +14,7 @@ use crate::scene::media::Medium;
 use crate::scene::receiver::ReceiverSpec;
 
 /// Most emitters, materials, surfaces or receivers of one scene, each.
-const MOST_PARTS: usize = 4096;
+pub const MOST_PARTS: usize = 4096;
 
 /// Most replicates.
 const MOST_REPLICATES: u64 = 65_536;
@@ -44,6 +45,8 @@ pub(super) struct Parts {
     pub run: RunDefaults,
     /// Every mention of a file.
     pub files: Vec<Placed<String>>,
+    /// What the text asks for, before any file is looked at.
+    pub asked: Asked,
 }
 
 impl Parts {
@@ -68,7 +71,7 @@ impl Parts {
         let materials = read_each(tables, |table, index| {
             let name = Placed { value: names[index].clone(), place: table.place() };
             material_names.insert(document, &name, &name.value, index);
-            material::read(table)
+            material::read(table, &name.value)
         });
 
         let named = RefCell::new(Vec::new());
@@ -87,9 +90,9 @@ impl Parts {
         });
 
         let mut surface_names = Names::new("surface");
-        let mut cells = 0;
+        let mut asked = Asked::default();
         let surfaces = read_each(parts_named(&mut root, "surface"), |table, index| {
-            surface::read(table, index, &mut surface_names, &material_names, &mut cells)
+            surface::read(table, index, &mut surface_names, &material_names, &mut asked)
         });
 
         let mut names = Names::new("receiver").advising(
@@ -112,7 +115,18 @@ impl Parts {
         let run = root.table("run", "[run]").map(read_run).unwrap_or_default();
         root.finish();
         let files = document.files();
-        Self { emitters, materials, surfaces, receivers, camera, ambient, compared_reflections, run, files }
+        Self {
+            emitters,
+            materials,
+            surfaces,
+            receivers,
+            camera,
+            ambient,
+            compared_reflections,
+            run,
+            files,
+            asked,
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::asked::{Asked, What};
 use super::heightfield;
 use super::loader::{Make, made};
 use super::names::Names;
@@ -10,7 +11,7 @@ use super::part::SurfacePart;
 use super::table::Table;
 use crate::error::invalid::Interval;
 use crate::error::{Invalid, Kind};
-use crate::files::obj::{ObjOptions, parse_obj};
+use crate::files::obj::{ObjOptions, mesh_of};
 use crate::geometry::{
     ANGLE, COORDINATE, LENGTH, Paraboloid, Rectangle, SCALE, Shape, Smoothing, Sphere, Transform, box_mesh,
 };
@@ -30,7 +31,7 @@ pub(super) fn read(
     index: usize,
     names: &mut Names,
     materials: &Names,
-    cells: &mut u64,
+    asked: &mut Asked,
 ) -> Option<SurfacePart> {
     let name = table.needed("name", "a name of its own, in quotes", Table::text);
     if let Some(name) = &name {
@@ -41,13 +42,19 @@ pub(super) fn read(
     let options = read_options(&mut table);
     let words = "\"mesh\", \"rectangle\", \"box\", \"sphere\", \"paraboloid\" or \"heightfield\"";
     let kind = table.needed("type", words, |t, key| t.word(key, &TYPES.map(|word| (word, word))))?;
+    let label = name.as_ref().map_or("", |name| &name.value);
+    let mut ask: Option<Make<()>> = None;
     let shape: Option<Make<Shape>> = match kind {
-        "mesh" => read_mesh(&mut table, transform),
+        "mesh" => read_mesh(&mut table, label, transform).map(|(make, counts)| {
+            ask = Some(counts);
+            make
+        }),
         "heightfield" => {
-            let label = name.as_ref().map_or("", |name| &name.value);
-            let make = heightfield::read(&mut table, label, cells);
-            make.zip(transform)
-                .map(|(make, t)| -> Make<Shape> { Box::new(move |loader| Ok(moved(make(loader)?, &t)?)) })
+            let read = heightfield::read(&mut table, label, asked);
+            read.zip(transform).map(|((make, counts), t)| -> Make<Shape> {
+                ask = counts;
+                Box::new(move |loader| Ok(moved(make(loader)?, &t)?))
+            })
         }
         _ => {
             let shape = match kind {
@@ -62,7 +69,7 @@ pub(super) fn read(
     table.finish();
     let of_faces = ["mesh", "box", "heightfield"].contains(&kind).then_some(kind);
     let (name, material) = (name?.value, material?.1);
-    Some(SurfacePart { name, material, shape: shape?, of_faces, options })
+    Some(SurfacePart { name, material, ask, shape: shape?, of_faces, options })
 }
 
 /// `contact` and `priority`.
@@ -87,7 +94,12 @@ fn read_transform(table: &mut Table<'_, '_>) -> Option<Transform> {
     table.accept(Transform::new(scale, rotate_deg, translate))
 }
 
-fn read_mesh(table: &mut Table<'_, '_>, transform: Option<Transform>) -> Option<Make<Shape>> {
+/// The mesh, and what counts its triangles before any is made.
+fn read_mesh(
+    table: &mut Table<'_, '_>,
+    name: &str,
+    transform: Option<Transform>,
+) -> Option<(Make<Shape>, Make<()>)> {
     table.call("a mesh");
     let file = table.path("file");
     let closed = table.truth("closed") == Some(true);
@@ -96,14 +108,22 @@ fn read_mesh(table: &mut Table<'_, '_>, transform: Option<Transform>) -> Option<
         Some(false) => Smoothing::Flat,
         None => Smoothing::Given,
     };
-    let (file, transform) = (file?, transform?);
-    Some(Box::new(move |loader| {
+    let (file, transform, name) = (file?, transform?, name.to_owned());
+    let counted = file.clone();
+    let ask: Make<()> = Box::new(move |loader| {
+        let text = loader.obj(&counted)?;
+        loader.asked.count(What::Triangles, &name, text.triangles() as u64)?;
+        loader.asked.count(What::Vertices, &name, text.points() as u64)
+    });
+    let make: Make<Shape> = Box::new(move |loader| {
         // The transform is applied before the mesh is checked.
         let options = ObjOptions { transform, smoothing, closed };
-        let (mesh, found) = parse_obj(&loader.bytes(&file)?, &loader.path(&file), &options)?;
+        loader.bytes(&file)?;
+        let (mesh, found) = mesh_of(&*loader.obj(&file)?, &loader.path(&file), &options)?;
         loader.warnings.extend(found);
         Ok(mesh.into())
-    }))
+    });
+    Some((make, ask))
 }
 
 fn read_rectangle(table: &mut Table<'_, '_>) -> Option<Rectangle> {
