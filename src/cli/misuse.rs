@@ -9,6 +9,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use crate::error::{Diagnostic, Kind};
 use crate::files::kinds::{FileKind, kind_of};
+use crate::report::numbers::printable;
 
 use super::Command;
 
@@ -103,6 +104,7 @@ fn head(path: &Path) -> Option<Vec<u8>> {
 
 /// A name as it is typed in a shell.
 fn typed(name: &str) -> String {
+    let name = printable(name);
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:^=+\\".contains(c);
-    if name.chars().all(is_plain) { name.to_string() } else { format!("'{name}'") }
+    if name.chars().all(is_plain) { name } else { format!("'{name}'") }
 }
