@@ -116,7 +116,7 @@ fn saved<const C: usize>() -> Vec<u8> {
         cell: [i, 2 * i, 7],
         direction: i << 16,
         primitive: i % 2,
-        tag: i % 4 | 1 << 16,
+        tag: (i % 4) | (1 << 16),
         weight: [0.5; C],
     };
     let map = SavedMap {

@@ -40,6 +40,10 @@ pub fn opening(vertices: &[DVec3], edges: &[[u32; 2]]) -> f64 {
     let cell = |v: u32| ((vertices[v as usize] - all[0]) / near).floor().as_i64vec3();
     let mut places: HashMap<I64Vec3, Vec<u32>> = HashMap::new();
     for v in edges.iter().flatten() {
+        // Each vertex is the end of several edges.
+        if places.get(&cell(*v)).is_some_and(|here| here.contains(v)) {
+            continue;
+        }
         for offset in 0..27 {
             let around = cell(*v) + I64Vec3::new(offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1);
             for w in places.get(&around).into_iter().flatten() {
@@ -49,8 +53,8 @@ pub fn opening(vertices: &[DVec3], edges: &[[u32; 2]]) -> f64 {
             }
         }
         let here = places.entry(cell(*v)).or_default();
-        // Each vertex is the end of several edges. Where many are in one place, what is near to one is near to these.
-        if here.len() < MOST_OF_ONE_PLACE && !here.contains(v) {
+        // Where many are in one place, what is near to one is near to these.
+        if here.len() < MOST_OF_ONE_PLACE {
             here.push(*v);
         }
     }
