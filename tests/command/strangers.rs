@@ -69,7 +69,7 @@ fn pipes_are_refused_at_once_wherever_a_file_is_named() {
     for line in ["check /dev/zero", "photometry /dev/zero", "bsdf /dev/zero"] {
         s.is_told(line, 1, &["which is not a regular file"]);
     }
-    s.is_told("check .", 1, &["which is a folder"]);
+    s.is_told("check .", 1, &["found a folder"]);
     // A pipe in the place of an older list is no list.
     fs::create_dir(s.path("old")).unwrap();
     fs::rename(s.path("pipe"), s.path("old/report.json")).unwrap();

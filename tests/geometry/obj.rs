@@ -93,7 +93,7 @@ fn every_fault_has_its_line_and_reason() {
         (swap("f 1 2 6 5\n", ""), Kind::Geometry, None, "4 open edges"),
         (swap("f 1 2 6 5", "f 5 6 2 1"), Kind::Geometry, None, "4 edges of inconsistent orientation"),
         ("v 0 0 0\n".into(), Kind::Missing, None, "no face"),
-        (String::new(), Kind::Missing, None, "no face"),
+        (String::new(), Kind::Missing, Some((1, 1)), "an empty file"),
         ("v 0 0 0\nf 1 1 1\n".into(), Kind::Geometry, None, "no triangle"),
     ] {
         let d = parse(&text, &closed()).unwrap_err();

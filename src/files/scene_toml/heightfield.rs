@@ -1,5 +1,7 @@
 //! `type = "heightfield"`: waves, noise or an image over a rectangle.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 use super::asked::{Asked, What};
@@ -52,11 +54,8 @@ pub(super) fn read(
             let ask = count_image(name.to_owned(), file.clone(), cells.is_some());
             let make: Make<Shape> = Box::new(move |loader: &mut Loader| {
                 let bytes = loader.bytes(&file)?;
-                let image = height_image::parse(&bytes, heights).map_err(|e| {
-                    let name = loader.path(&file).display().to_string();
-                    let other = instead(&bytes, Use::Image, "a PNG of 8 or 16 bits", &name);
-                    other.unwrap_or(e).in_file(name)
-                })?;
+                let image = height_image::parse(&bytes, heights)
+                    .map_err(|e| no_image(e, &bytes, loader.path(&file)))?;
                 let [columns, rows] = image.size();
                 let cells = cells.unwrap_or([columns as u32 - 1, rows as u32 - 1]);
                 // A picture of one grey packs a thousandfold: a small file must not ask for gigabytes of triangles.
@@ -107,11 +106,18 @@ fn count(table: &Table<'_, '_>, name: &str, cells: u64, terms: u64, asked: &mut 
     }
 }
 
+/// What is wrong with a file of heights, or what else it is.
+fn no_image(e: Diagnostic, bytes: &[u8], path: PathBuf) -> Diagnostic {
+    let name = path.display().to_string();
+    instead(bytes, Use::Image, "a PNG of 8 or 16 bits", &name).unwrap_or(e).in_file(name)
+}
+
 /// What looks at the size of an image, before anything is made of it.
 fn count_image(name: String, file: Placed<String>, has_cells: bool) -> Make<()> {
     Box::new(move |loader: &mut Loader| {
         let (_, bytes) = loader.look(&file)?;
-        let [columns, rows] = height_image::size(&bytes).map_err(|e| e.in_file(loader.path(&file)))?;
+        let [columns, rows] =
+            height_image::size(&bytes).map_err(|e| no_image(e, &bytes, loader.path(&file)))?;
         loader.asked.count(What::Pixels, &name, columns * rows)?;
         let cells = columns.saturating_sub(1) * rows.saturating_sub(1);
         // One that is too large by itself is told so when it is made.
