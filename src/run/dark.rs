@@ -13,9 +13,9 @@ use crate::surface::Kind;
 
 use super::Outcome;
 
-/// Photons without which nothing is said of what they do not meet.
+/// Below this many photons nothing is said of what none of them met.
 const FEWEST: u64 = 1000;
-/// Photons that would have met what is not very small.
+/// From this many photons on, a surface that none met is unlikely to be just small.
 const MANY: u64 = 1 << 16;
 /// Events a photon from which on a run takes long.
 const LONG: f64 = 1000.0;
@@ -26,13 +26,13 @@ const MOST_EMITTERS: usize = 16;
 /// Clear faces looked through.
 const MOST_FACES: usize = 64;
 
-/// What is to be said of it; `is_told` where something was found already that keeps the light away.
-pub(super) fn warnings(scene: &Scene, outcome: &Outcome, is_told: bool) -> Vec<Warning> {
+/// The warnings. `is_explained`: an earlier warning says what keeps the light away, so those of unlit things are left out.
+pub(super) fn warnings(scene: &Scene, outcome: &Outcome, is_explained: bool) -> Vec<Warning> {
     let mut all: Vec<Warning> = long_walks(outcome).into_iter().collect();
     if outcome.photons >= FEWEST {
         let receivers = scene.receivers.iter().enumerate();
-        all.extend(receivers.filter_map(|(i, receiver)| dark(scene, outcome, is_told, i, receiver)));
-        all.extend(unmet(scene, outcome).filter(|_| !is_told));
+        all.extend(receivers.filter_map(|(i, receiver)| dark(scene, outcome, is_explained, i, receiver)));
+        all.extend(unmet(scene, outcome).filter(|_| !is_explained));
     }
     all
 }
@@ -65,62 +65,64 @@ fn events_a_photon(outcome: &Outcome) -> f64 {
 }
 
 /// A receiver at which nothing arrived.
-fn dark(scene: &Scene, outcome: &Outcome, is_told: bool, i: usize, receiver: &Receiver) -> Option<Warning> {
-    if outcome.totals().sum[i] > 0 {
-        return None;
-    }
-    let others = outcome.other_events[i];
-    let name = &receiver.name;
-    let (code, message, remedy) = if others > 0 {
-        let lumens = four_digits(others as f64 * outcome.photon_lm);
-        let (asked, arrived, remedy) = match receiver.events {
-            ReceiverEvents::Indirect => (
-                "indirect",
-                "straight from emitters",
-                "say `events = \"all\"` or \"direct\": nothing in the scene sends light on to it",
-            ),
-            ReceiverEvents::Direct | ReceiverEvents::All => (
-                "direct",
-                "after other events",
-                "say `events = \"all\"` or \"indirect\": what has passed glass is not direct, whatever it is bent",
-            ),
-        };
-        let message = format!(
-            "receiver \"{name}\" counts {asked} light alone and got none; {lumens} lm arrived {arrived}"
-        );
-        ("other-events", message, remedy)
-    } else if outcome.turned_away[i] == 0 && !is_told {
-        let photons = grouped(outcome.photons);
-        match before(scene, receiver) {
-            Some(surface) => {
-                let surface = scene.geometry.name(surface);
-                let message = format!(
-                    "nothing arrived at receiver \"{name}\" of {photons} photons: \"{surface}\" stands before it"
-                );
-                (
-                    "nothing-arrives",
-                    message,
-                    "move one of them, or put the receiver on the surface that is met first",
-                )
-            }
-            None => {
-                let message = format!("nothing arrived at receiver \"{name}\" of {photons} photons");
-                (
-                    "nothing-arrives",
-                    message,
-                    "look at where the light goes; a very small one needs more photons",
-                )
-            }
-        }
-    } else {
-        return None;
+fn dark(
+    scene: &Scene,
+    outcome: &Outcome,
+    is_explained: bool,
+    i: usize,
+    receiver: &Receiver,
+) -> Option<Warning> {
+    let (code, message, remedy) = match (outcome.totals().sum[i], outcome.other_events[i]) {
+        (1.., _) => return None,
+        (0, others @ 1..) => other_events(receiver, others as f64 * outcome.photon_lm),
+        // Light on its other side has a warning of its own.
+        (0, 0) if is_explained || outcome.turned_away[i] > 0 => return None,
+        (0, 0) => nothing_arrives(scene, outcome, receiver),
     };
     let surfaces = vec![scene.geometry.name(receiver.surface).to_owned()];
     Some(Warning { severity: Severity::Note, code, message, surfaces, share: None, remedy: remedy.into() })
 }
 
-/// What emitters see in the place of a receiver, if it is the same surface as a rule.
-fn before(scene: &Scene, receiver: &Receiver) -> Option<SurfaceId> {
+/// Code, message and remedy of a receiver that got light, but none of the kind that it counts.
+fn other_events(receiver: &Receiver, lumens: f64) -> (&'static str, String, &'static str) {
+    let (name, lumens) = (&receiver.name, four_digits(lumens));
+    let (asked, arrived, remedy) = match receiver.events {
+        ReceiverEvents::Indirect => (
+            "indirect",
+            "straight from emitters",
+            "say `events = \"all\"` or \"direct\": nothing in the scene sends light on to it",
+        ),
+        ReceiverEvents::Direct | ReceiverEvents::All => (
+            "direct",
+            "after other events",
+            "say `events = \"all\"` or \"indirect\": what has passed glass is not direct, however little it is bent",
+        ),
+    };
+    let message =
+        format!("receiver \"{name}\" counts {asked} light alone and got none; {lumens} lm arrived {arrived}");
+    ("other-events", message, remedy)
+}
+
+/// Code, message and remedy of a receiver that got no light at all.
+fn nothing_arrives(
+    scene: &Scene,
+    outcome: &Outcome,
+    receiver: &Receiver,
+) -> (&'static str, String, &'static str) {
+    let message =
+        format!("nothing arrived at receiver \"{}\" of {} photons", receiver.name, grouped(outcome.photons));
+    let (message, remedy) = match blocker(scene, receiver) {
+        Some(surface) => (
+            format!("{message}: \"{}\" stands before it", scene.geometry.name(surface)),
+            "move one of them, or put the receiver on the surface that is met first",
+        ),
+        None => (message, "look at where the light goes; a very small receiver needs more photons"),
+    };
+    ("nothing-arrives", message, remedy)
+}
+
+/// The opaque surface that blocks more than half of the sight lines from emitters to a receiver.
+fn blocker(scene: &Scene, receiver: &Receiver) -> Option<SurfaceId> {
     let shape = &scene.geometry.surfaces()[receiver.surface.0 as usize].shape;
     let faces = shape.face_count();
     let some = |k: usize| shape.triangle(k * faces / faces.min(POINTS));

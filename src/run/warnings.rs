@@ -58,8 +58,8 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     let turned_away: Vec<_> = run.turned_away().filter(|w| !is_shut(w)).collect();
     all.extend(turned_away);
     all.extend(run.aimed_away());
-    let is_told = all.iter().any(|w| [LAMP_INSIDE, AIMED_AWAY].contains(&w.code));
-    all.extend(dark::warnings(scene, outcome, is_told));
+    let is_explained = all.iter().any(|w| [LAMP_INSIDE, AIMED_AWAY].contains(&w.code));
+    all.extend(dark::warnings(scene, outcome, is_explained));
     all.extend(run.in_turn());
     all.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     all

@@ -1,7 +1,7 @@
 //! `caustix compare`: the error of every algorithm variant against a reference; of sequences side by side where the scene has
 //! `[compare]`.
 
-mod parts;
+mod kept;
 mod room;
 mod study;
 

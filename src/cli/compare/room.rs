@@ -11,7 +11,7 @@ use crate::lab::room::{Measurement, Options, RoomStudy, Task};
 use crate::report::room::{csv, deviations_csv, markdown, text};
 use crate::scene::Scene;
 
-use super::parts::{Kept, command_line, scene_key, write_study};
+use super::kept::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
 /// What a study writes.

@@ -23,7 +23,7 @@ use crate::report::compare::text::text;
 use crate::run::{Algorithm, MAX_PHOTONS, Variant};
 use crate::scene::Scene;
 
-use super::parts::{Kept, command_line, scene_key, write_study};
+use super::kept::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
 /// Photons of each run where none is named.
