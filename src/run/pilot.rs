@@ -38,7 +38,7 @@ pub fn is_at_bound(cells: [u32; 2]) -> Option<&'static str> {
 /// How many times as long as the other side u is on a surface that goes round: about pi on a sphere.
 const ROUND: f64 = 3.0;
 
-/// Divides the receivers of a scene that have no `cells` so that a cell's standard error is about [`CELL_ERROR`] after this
+/// Divides the receivers of a scene that have no `cells` so that a cell's standard error is about 2 % after this
 /// plan's photons: half of the light falls on cells of less. Cells are about square in metres. They depend on the scene
 /// and the number of photons alone, so that maps of other seeds and variants have the same.
 ///
