@@ -3,7 +3,7 @@
     caustix render SCENE.toml -o out
     python open_maps.py out [receiver ...]
 
-A receiver's EXR is opened with OpenCV, imageio, OpenEXR, OpenImageIO and Mitsuba, a mesh's .vtp with VTK. Whatever is not
+A receiver's EXR is opened with OpenCV, imageio, OpenEXR, OpenImageIO and Mitsuba, a mesh's .vtp with VTK and its .ply with plyfile. Whatever is not
 installed is said and left out. Illuminance (and, where a reader gives all channels, standard error and hits) must be the
 CSV's to 1e-6 of its value. report.json must have the hash of every file. Exit status 1 where anything differs.
 """
@@ -88,6 +88,13 @@ def with_vtk(path):
     return arrays
 
 
+def with_plyfile(path):
+    from plyfile import PlyData
+
+    faces = PlyData.read(str(path))["face"]
+    return {channel: np.asarray(faces[column]) for channel, column in COLUMNS.items()}
+
+
 READERS = [
     ("exr", "opencv-python-headless", with_opencv, {"Y"}),
     ("exr", "imageio", with_imageio, {"Y"}),
@@ -95,6 +102,7 @@ READERS = [
     ("exr", "OpenImageIO", with_openimageio, set(COLUMNS)),
     ("exr", "mitsuba", with_mitsuba, set(COLUMNS)),
     ("vtp", "vtk", with_vtk, set(COLUMNS)),
+    ("ply", "plyfile", with_plyfile, set(COLUMNS)),
 ]
 
 
