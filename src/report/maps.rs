@@ -1,7 +1,7 @@
 //! The files of a receiver: EXR and CSV for every one; PLY and VTP ([`super::ply`], [`super::vtp`]) where the cells are faces
 //! of a mesh.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::error::Result;
@@ -10,10 +10,10 @@ use crate::files::exr::{Channel, Light, floats, write_maps};
 use crate::geometry::Shape;
 use crate::run::Outcome;
 use crate::scene::Scene;
+use crate::scene::evaluation::middle;
 use crate::scene::receiver::{Cells, Receiver};
 
 use super::attributes::attributes;
-use super::numbers::bare;
 use super::statistics::ReceiverStatistics;
 
 /// Pixels of a receiver's EXR.
@@ -92,19 +92,15 @@ pub fn write_csv(
             for face in 0..count {
                 let Some([a, b, c]) = shape.triangle(face) else { continue };
                 let m = (a + b + c) / 3.0;
-                let (area, numbers) = (receiver.area_m2(face), numbers.row(face));
-                writeln!(out, "{face},{},{},{},{area},{numbers}", m.x, m.y, m.z)?;
+                write!(out, "{face},")?;
+                for value in [m.x, m.y, m.z, receiver.area_m2(face)] {
+                    write_number(out, value)?;
+                }
+                numbers.write(out, face)?;
             }
             Ok(())
         }
-        Cells::Grid { nu, nv } => {
-            let middle = |cell: usize| {
-                let (row, column) = (cell / nu as usize, cell % nu as usize);
-                let v = (f64::from(nv - 1) - row as f64 + 0.5) / f64::from(nv);
-                ((column as f64 + 0.5) / f64::from(nu), v)
-            };
-            write_cells(out, shape, receiver.cells.len(), middle, &numbers)
-        }
+        Cells::Grid { nu, nv } => write_cells(out, shape, [nu, nv], |cell| middle([nu, nv], cell), &numbers),
     })?;
     Ok(true)
 }
@@ -126,7 +122,8 @@ pub fn write_grid_csv(
         standard_error_lx: &of.standard_error_lx,
         hits: &of.hits,
     };
-    write_atomically(path, |out| write_cells(out, shape, grid.cells(), |cell| grid.middle(cell), &numbers))?;
+    let counts = [grid.nu, grid.nv];
+    write_atomically(path, |out| write_cells(out, shape, counts, |cell| grid.middle(cell), &numbers))?;
     Ok(true)
 }
 
@@ -145,24 +142,55 @@ impl<'a> Numbers<'a> {
         Self { illuminance_lx, standard_error_lx, hits }
     }
 
-    fn row(&self, cell: usize) -> String {
-        let error = bare(Some(self.standard_error_lx[cell]));
-        format!("{},{error},{}", self.illuminance_lx[cell], self.hits[cell])
+    /// The end of a cell's row.
+    fn write(&self, out: &mut impl Write, cell: usize) -> io::Result<()> {
+        write_number(out, self.illuminance_lx[cell])?;
+        let error = self.standard_error_lx[cell];
+        if error.is_finite() {
+            write_number(out, error)?
+        } else {
+            out.write_all(b",")?
+        }
+        serde_json::to_writer(&mut *out, &self.hits[cell])?;
+        out.write_all(b"\n")
     }
 }
 
+/// The shortest decimal that reads back as the same number, and a comma. By serde_json, several times as fast as
+/// the standard library: a map of 512 x 512 cells writes 1.3 million of them.
+fn write_number(out: &mut impl Write, value: f64) -> io::Result<()> {
+    serde_json::to_writer(&mut *out, &value)?;
+    out.write_all(b",")
+}
+
+/// The cells of a grid of `[nu, nv]`, row by row from the top left; `middle` gives the (u, v) of one.
 fn write_cells(
-    out: &mut dyn Write,
+    out: &mut impl Write,
     shape: &Shape,
-    cells: usize,
+    [nu, nv]: [u32; 2],
     middle: impl Fn(usize) -> (f64, f64),
     numbers: &Numbers<'_>,
-) -> std::io::Result<()> {
+) -> io::Result<()> {
     writeln!(out, "x,y,z,u,v,{NUMBERS}")?;
-    for cell in 0..cells {
-        let (u, v) = middle(cell);
-        let Some(m) = shape.at(u, v) else { continue };
-        writeln!(out, "{},{},{},{u},{v},{}", m.x, m.y, m.z, numbers.row(cell))?;
+    let text = |value: f64| {
+        let mut text = Vec::new();
+        write_number(&mut text, value).map(|()| text)
+    };
+    // A column's u and a row's v are turned into text once.
+    let us = (0..nu as usize).map(|column| text(middle(column).0)).collect::<io::Result<Vec<_>>>()?;
+    for row in 0..nv as usize {
+        let first = row * nu as usize;
+        let v = text(middle(first).1)?;
+        for (cell, u) in (first..).zip(&us) {
+            let (at_u, at_v) = middle(cell);
+            let Some(m) = shape.at(at_u, at_v) else { continue };
+            for value in [m.x, m.y, m.z] {
+                write_number(out, value)?;
+            }
+            out.write_all(u)?;
+            out.write_all(&v)?;
+            numbers.write(out, cell)?;
+        }
     }
     Ok(())
 }

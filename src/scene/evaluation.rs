@@ -79,12 +79,17 @@ impl Grid {
 
     /// (u, v) of the middle of a cell.
     pub fn middle(&self, cell: usize) -> (f64, f64) {
-        let (row, column) = (cell / self.nu as usize, cell % self.nu as usize);
         let outer = |x: f64, border: f64| border + x * (1.0 - 2.0 * border);
-        let u = (column as f64 + 0.5) / f64::from(self.nu);
-        let v = 1.0 - (row as f64 + 0.5) / f64::from(self.nv);
+        let (u, v) = middle([self.nu, self.nv], cell);
         (outer(u, self.border[0]), outer(v, self.border[1]))
     }
+}
+
+/// (u, v) of the middle of a cell of `[nu, nv]`, row by row from the top left.
+pub fn middle([nu, nv]: [u32; 2], cell: usize) -> (f64, f64) {
+    let (row, column) = (cell / nu as usize, cell % nu as usize);
+    let v = (f64::from(nv) - row as f64 - 0.5) / f64::from(nv);
+    ((column as f64 + 0.5) / f64::from(nu), v)
 }
 
 /// Cells along the sides.
