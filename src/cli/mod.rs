@@ -2,6 +2,7 @@
 
 mod args;
 mod deadline;
+mod far_field;
 mod misuse;
 mod progress;
 mod results;

@@ -13,6 +13,7 @@ use crate::files::set::Set;
 use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture, warnings as seen_wrong};
 use crate::plot;
 use crate::report::camera::CameraReport;
+use crate::report::far_field::FarFieldStatistics;
 use crate::report::json::Report;
 use crate::report::numbers::grouped;
 use crate::report::ply::write_ply;
@@ -28,7 +29,7 @@ use crate::scene::receiver::{Cells, Receiver};
 use super::args::MAX_THREADS;
 use super::misuse::a_folder;
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::{Done, RenderArgs, algorithm, count, exit, picture, print, results, say, warn};
+use super::{Done, RenderArgs, algorithm, count, exit, far_field, picture, print, results, say, warn};
 
 /// The list of a run's files.
 const REPORT: &str = "report.json";
@@ -101,6 +102,11 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     for (receiver, s) in scene.receivers.iter().zip(&statistics) {
         files.push(write_receiver(&mut set, &scene, &outcome, receiver, s));
     }
+    let far_fields: Vec<_> =
+        (0..scene.far_fields.len()).map(|i| FarFieldStatistics::new(&scene, &outcome, i)).collect();
+    let fields = scene.far_fields.iter().zip(&far_fields);
+    let far_field_files: Vec<_> =
+        fields.map(|(field, s)| far_field::write(&mut set, &scene, &outcome, field, s)).collect();
     let mut camera = None;
     let mut unsaved = None;
     if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
@@ -114,6 +120,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     }
     let total_s = started.elapsed().as_secs_f64();
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
+    report.add_far_fields(&scene, &far_fields, &far_field_files);
     report.see(camera, picture.as_ref().map_or(Vec::new(), |picture| seen_wrong(&scene, picture.summary())));
     let mut written = set.finish(|files| vouching(&report, files));
     progress.clear();
@@ -121,6 +128,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     results::tell(folder, &written, &inputs);
     if !args.quiet {
         print(&text::summary(&scene, &outcome, &statistics, &files, total_s));
+        report.far_fields.iter().zip(&scene.far_fields).for_each(|(of, field)| print(&of.text(field)));
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
         print(&results::written_to(folder, &written));
     }
@@ -151,10 +159,11 @@ fn outputs(args: &RenderArgs, scene: &Scene) -> Vec<PathBuf> {
         let endings = endings(receiver).into_iter();
         endings.map(|ending| format!("{}.{ending}", receiver.name)).collect::<Vec<_>>()
     };
+    let of_fields = scene.far_fields.iter().filter(|_| args.map.is_none()).flat_map(far_field::files);
     let of_camera = scene.camera.iter().flat_map(|spec| picture::files(spec));
     // A --map gives no maps of receivers.
     let of_receivers = scene.receivers.iter().filter(|_| args.map.is_none()).flat_map(of_receiver);
-    let names = of_receivers.chain(of_camera).chain([REPORT.to_string(), LOCK.to_string()]);
+    let names = of_receivers.chain(of_fields).chain(of_camera).chain([REPORT.to_string(), LOCK.to_string()]);
     names.map(|name| args.output.join(name)).chain(args.save_map.clone()).collect()
 }
 

@@ -38,6 +38,7 @@ pub mod sources {
 pub use choice::Emitters;
 pub use colour::Colour;
 pub use frame::{AimFrame, FLUX};
+pub use photometric::grid_axes;
 pub use sources::*;
 
 /// The start of a photon.

@@ -1,4 +1,5 @@
-//! From sums to illuminance and standard errors; from photons to luminance and its bias.
+//! From sums to illuminance and standard errors; from photons to luminance and its bias; from directions to tables.
 
 pub mod replicates;
 pub mod extremes;
+pub mod far_field;

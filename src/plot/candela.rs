@@ -1,7 +1,7 @@
 //! The polar diagram of a photometric file: which planes are drawn.
 
 use crate::photometry::web::PhotometricType;
-use crate::photometry::{Photometry, Summary};
+use crate::photometry::{Photometry, Summary, Web};
 use crate::report::numbers::digits;
 
 use super::drawing::Drawing;
@@ -11,7 +11,12 @@ use super::polar::{Curve, PolarPlot};
 /// The diagram of a file: type C the planes C0-C180 and C90-C270; types A and B the vertical section (H = 0) and the
 /// horizontal one (V = 0), with the aim at the bottom. One curve where both planes are the same.
 pub fn drawing(photometry: &Photometry, summary: &Summary) -> Drawing {
-    let web = &photometry.web;
+    let curves = curves(&photometry.web);
+    PolarPlot { title: title(photometry), curves, footer: footer(summary) }.drawing()
+}
+
+/// The curves of a table.
+pub fn curves(web: &Web) -> Vec<Curve> {
     let (first, second) = match web.photometric_type {
         PhotometricType::C => {
             // Signed polar angle: negative angles lie in the opposite half plane.
@@ -36,7 +41,7 @@ pub fn drawing(photometry: &Photometry, summary: &Summary) -> Drawing {
         curves.truncate(1);
         curves[0].label = "all planes".into();
     }
-    PolarPlot { title: title(photometry), curves, footer: footer(summary) }.drawing()
+    curves
 }
 
 /// Intensities at the table's own angles on both sides, and at whole degrees between.

@@ -11,10 +11,12 @@ use crate::run::warnings::TRAPPED;
 use crate::run::{Estimate, Outcome, Plan, StoppedBy, warnings};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
+use crate::scene::far_field::FarField;
 use crate::scene::receiver::Receiver;
 use crate::transport::census::Exceptions;
 
 use super::camera::CameraReport;
+use super::far_field::{self, FarFieldStatistics};
 use super::numbers::grouped;
 use super::statistics::ReceiverStatistics;
 use super::unknown::why_no_error;
@@ -43,6 +45,9 @@ pub struct Report<'a> {
     pub exceptions: Exceptions,
     /// Receivers in the order of the scene.
     pub receivers: Vec<ReceiverReport<'a>>,
+    /// Far fields in the order of the scene; absent where it has none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub far_fields: Vec<FarFieldReport<'a>>,
     /// The camera, where the scene has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraReport>,
@@ -202,6 +207,25 @@ pub struct ReceiverReport<'a> {
     pub untrusted: Vec<&'static str>,
 }
 
+/// One far field.
+#[derive(Debug, Clone, Serialize)]
+pub struct FarFieldReport<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Its numbers.
+    #[serde(flatten)]
+    pub numbers: &'a FarFieldStatistics,
+    /// Files written for it.
+    pub files: &'a [String],
+}
+
+impl FarFieldReport<'_> {
+    /// What the summary says of it.
+    pub fn text(&self, field: &FarField) -> String {
+        far_field::text(field, self.numbers, self.files)
+    }
+}
+
 /// The code of what was found before the run.
 const SCENE: &str = "scene";
 
@@ -305,6 +329,7 @@ impl<'a> Report<'a> {
                     untrusted: untrusted(r),
                 })
                 .collect(),
+            far_fields: Vec::new(),
             camera: None,
             stopped_by: match outcome.stopped_by {
                 StoppedBy::Photons => "photons",
@@ -314,9 +339,30 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// Adds the scene's far fields and what they say of themselves. `files` names what was written for each.
+    pub fn add_far_fields(
+        &mut self,
+        scene: &'a Scene,
+        numbers: &'a [FarFieldStatistics],
+        files: &'a [Vec<String>],
+    ) {
+        let all = || scene.far_fields.iter().zip(numbers);
+        let report = |((field, numbers), files): ((&'a FarField, _), &'a Vec<String>)| FarFieldReport {
+            name: &field.name,
+            numbers,
+            files,
+        };
+        self.far_fields = all().zip(files).map(report).collect();
+        self.tell(all().flat_map(|(field, numbers)| numbers.warnings(field)).collect());
+    }
+
     /// Adds the camera and what its picture says of itself.
     pub fn see(&mut self, camera: Option<CameraReport>, said: Vec<Warning>) {
         self.camera = camera;
+        self.tell(said);
+    }
+
+    fn tell(&mut self, said: Vec<Warning>) {
         let of_run = self.warnings.iter().take_while(|warning| warning.code != SCENE).count();
         self.warnings.splice(of_run..of_run, said);
         self.warnings[..].sort_by_key(|warning| (warning.code == SCENE, std::cmp::Reverse(warning.severity)));

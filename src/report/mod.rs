@@ -9,6 +9,7 @@ pub mod uniformity;
 pub mod unknown;
 pub mod attributes;
 pub mod maps;
+pub mod far_field;
 pub mod ply;
 pub mod vtp;
 pub mod picture;

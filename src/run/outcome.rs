@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind};
 use crate::estimate::extremes::{Extremes, Map, Unknown};
+use crate::estimate::far_field::{self, Sums, Table};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
 use crate::tally::counts::Counts;
@@ -47,6 +48,8 @@ pub struct Outcome {
     grids: Vec<Moments>,
     /// Of each evaluation grid's total.
     grid_totals: Moments,
+    /// Of every far field.
+    far_fields: Vec<Sums>,
     /// Arrivals on the side of each receiver on which it does not count.
     pub turned_away: Vec<u64>,
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
@@ -83,6 +86,7 @@ impl Outcome {
             totals: Moments::new(scene.receivers.len()),
             grids: scene.receivers.iter().map(|r| Moments::new(r.grid.map_or(0, |g| g.cells()))).collect(),
             grid_totals: Moments::new(scene.receivers.len()),
+            far_fields: vec![Sums::of_photons(plan.photons_per_replicate()); scene.far_fields.len()],
             turned_away: vec![0; scene.receivers.len()],
             other_events: vec![0; scene.receivers.len()],
             census: Census::default(),
@@ -116,6 +120,14 @@ impl Outcome {
         ];
         for (sums, counts) in refused {
             sums.iter_mut().zip(counts.iter()).for_each(|(sum, count)| *sum += count);
+        }
+        let counted = receivers.far_fields();
+        for (field, sums) in self.far_fields.iter_mut().enumerate() {
+            sums.absorb(
+                counted.nodes(field).iter().collect(),
+                counted.outside().iter().nth(field),
+                counted.seen().iter().nth(field),
+            );
         }
         self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).total()));
         self.grid_totals.absorb((0..self.cells.len()).map(|r| receivers.grid(r).map_or(0, Counts::total)));
@@ -173,6 +185,7 @@ impl Outcome {
         (self.photons, self.replicates, self.census) = (0, 0, Census::default());
         self.turned_away.fill(0);
         self.other_events.fill(0);
+        self.far_fields.iter_mut().for_each(Sums::clear);
         self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
         [&mut self.accounts, &mut self.totals, &mut self.grid_totals].into_iter().for_each(Moments::clear);
     }
@@ -230,6 +243,21 @@ impl Outcome {
     /// Flux that arrived at a receiver, lm.
     pub fn receiver_flux_lm(&self, receiver: usize) -> Estimate {
         self.total(&self.totals, receiver)
+    }
+
+    /// The table of a far field, cd.
+    pub(crate) fn far_field(&self, scene: &Scene, field: usize) -> Table {
+        far_field::table(&scene.far_fields[field], &self.far_fields[field], self.photon_lm)
+    }
+
+    /// What a far field saw in all, and what of it was outside its nodes, lm.
+    pub(crate) fn far_field_lm(&self, field: usize) -> [Estimate; 2] {
+        let sums = &self.far_fields[field];
+        [&sums.seen, &sums.outside].map(|by_replicate| {
+            let (photons, error) = far_field::total(by_replicate);
+            let standard_error = error.map(|error| error * self.photon_lm);
+            Estimate { value: photons as f64 * self.photon_lm, standard_error }
+        })
     }
 
     /// Flux absorbed by a surface, lm.

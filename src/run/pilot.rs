@@ -46,6 +46,7 @@ const ROUND: f64 = 3.0;
 /// An interrupt; a ledger that does not balance (a defect of the program).
 pub fn choose_cells(scene: &mut Scene, plan: &Plan, interrupt: &AtomicBool) -> Result<()> {
     let receivers = std::mem::take(&mut scene.receivers);
+    let far_fields = std::mem::take(&mut scene.far_fields);
     let is_open = |receiver: &&Receiver| receiver.divided_by == DividedBy::Default;
     let level = |receiver: &Receiver, k: u32| {
         let mut divided = receiver.divided([1 << k; 2], DividedBy::Pilot);
@@ -55,7 +56,7 @@ pub fn choose_cells(scene: &mut Scene, plan: &Plan, interrupt: &AtomicBool) -> R
     scene.receivers =
         receivers.iter().filter(is_open).flat_map(|r| (0..LEVELS).map(move |k| level(r, k))).collect();
     let errors = if scene.receivers.is_empty() { Ok(Vec::new()) } else { errors(scene, plan, interrupt) };
-    scene.receivers = receivers;
+    (scene.receivers, scene.far_fields) = (receivers, far_fields);
     let open = scene.receivers.iter_mut().filter(|r| r.divided_by == DividedBy::Default);
     for (receiver, errors) in open.zip(errors?) {
         let aspect = receiver.size_m.map_or(ROUND, |[u, v]| u / v);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::error::Result;
+use crate::error::{Diagnostic, Kind, Result};
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 use crate::tally::Receivers;
@@ -41,6 +41,7 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
+    check_far_fields(scene, plan)?;
     if !together(scene, plan) {
         let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
             tracer.trace(end, receivers, interrupt, progress)
@@ -89,7 +90,23 @@ pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
 fn counters(scene: &Scene, plan: &Plan) -> u64 {
     let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
     let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
-    cells.saturating_mul(u64::from(plan.replicates()))
+    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.len() as u64).sum();
+    (cells + nodes).saturating_mul(u64::from(plan.replicates()))
+}
+
+/// That there is room for the far fields of every replicate, which are all kept: their errors need them.
+///
+/// # Errors
+/// More than 2^27 nodes.
+pub(super) fn check_far_fields(scene: &Scene, plan: &Plan) -> Result<()> {
+    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.len() as u64).sum();
+    let all = nodes.saturating_mul(u64::from(plan.replicates()));
+    if all <= MOST_COUNTERS {
+        return Ok(());
+    }
+    let found =
+        format!("{} replicates of {nodes} nodes in far fields, half steps included", plan.replicates());
+    Err(Diagnostic::new(Kind::Limit, found, "at most 2^27 nodes in all: fewer replicates, or wider steps"))
 }
 
 /// A replicate as far as it is traced.
@@ -104,7 +121,7 @@ impl<'s> Replica<'s> {
         let (seed, n) = (plan.seed(), plan.photons_per_replicate());
         Self {
             tracer: Tracer::new(scene, plan.algorithm(), seed, replicate, n),
-            receivers: Receivers::new(&scene.geometry, &scene.receivers),
+            receivers: Receivers::of_scene(scene, n),
             traced: Traced::new(scene),
         }
     }

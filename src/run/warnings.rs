@@ -293,7 +293,8 @@ impl Run<'_> {
         missed.filter_map(move |(&emitter, &count)| {
             let emitted = ledger.emitted[emitter];
             let share = count as f64 / (emitted as f64).max(1.0);
-            if share < MISSED || emitted < FEWEST_EMITTED {
+            let is_measured = self.scene.far_fields.iter().any(|field| field.surface.is_none());
+            if share < MISSED || emitted < FEWEST_EMITTED || is_measured {
                 return None;
             }
             Some(Warning {

@@ -10,6 +10,7 @@ use crate::geometry::{Bond, Geometry, Mesh, Shape, Surface};
 use crate::surface::Material;
 
 use super::camera::Camera;
+use super::far_field::{FarField, FarFieldSpec};
 use super::media::{Media, Medium};
 use super::options::SurfaceOptions;
 use super::receiver::{MOST_CELLS, Receiver, ReceiverSpec};
@@ -31,6 +32,7 @@ pub struct SceneBuilder {
     surfaces: Vec<(Surface, Material, SurfaceOptions, Option<Place>)>,
     emitters: Vec<EmitterPart>,
     receivers: Vec<(ReceiverSpec, Option<Place>)>,
+    far_fields: Vec<(FarFieldSpec, Option<Place>)>,
     camera: Option<Camera>,
     camera_medium: Option<Medium>,
     ambient: Option<Medium>,
@@ -112,6 +114,12 @@ impl SceneBuilder {
         self
     }
 
+    /// A far field.
+    pub fn far_field(&mut self, far_field: FarFieldSpec) -> &mut Self {
+        self.far_fields.push((far_field, self.place));
+        self
+    }
+
     /// The camera, instead of any before.
     pub fn camera(&mut self, camera: Camera) -> &mut Self {
         self.camera = Some(camera);
@@ -180,6 +188,22 @@ impl SceneBuilder {
                 break;
             }
         }
+        let (mut far_fields, mut nodes) = (Vec::new(), 0u64);
+        for (spec, place) in &self.far_fields {
+            match FarField::new(spec, &geometry) {
+                Ok(far_field) => {
+                    nodes += far_field.nodes.len() as u64;
+                    far_fields.push(far_field);
+                }
+                Err(e) => errors.push(e.placed(*place)),
+            }
+            if nodes > MOST_CELLS {
+                let found = format!("the far field `{}`, with which there are {nodes} nodes", spec.name());
+                let required = "at most 2^26 nodes in all far fields of a scene";
+                errors.push(Diagnostic::new(Kind::Limit, found, required).placed(*place));
+                break;
+            }
+        }
         let (mut emitter_names, mut emitters, mut emitter_colours) = (Vec::new(), Vec::new(), Vec::new());
         let mut starts = Vec::new();
         for EmitterPart { name, emitter, colour, medium, place } in self.emitters {
@@ -201,6 +225,7 @@ impl SceneBuilder {
                     geometry,
                     emitters,
                     receivers,
+                    far_fields,
                     emitter_names,
                     compared_reflections: self.compared_reflections,
                     camera: self.camera,
@@ -240,8 +265,11 @@ impl SceneBuilder {
         // Cases are not told apart: some file systems don't, and these names become file names.
         let receivers =
             self.receivers.iter().map(|(r, place)| ("receiver", r.name().to_uppercase(), r.name(), place));
+        let far_fields =
+            self.far_fields.iter().map(|(f, place)| ("far field", f.name().to_uppercase(), f.name(), place));
         let mut known = BTreeSet::new();
-        let again = emitters.chain(receivers).filter(|(what, key, ..)| !known.insert((*what, key.clone())));
+        let all = emitters.chain(receivers).chain(far_fields);
+        let again = all.filter(|(what, key, ..)| !known.insert((*what == "emitter", key.clone())));
         again
             .map(|(what, _, name, place)| {
                 let found = format!("the {what} name `{name}` a second time");

@@ -10,11 +10,13 @@ pub mod check;
 mod contacts;
 mod endless;
 mod facets;
+pub mod far_field;
 mod figure;
 mod found;
 pub mod inside;
 pub mod media;
 mod near_field;
+pub mod nodes;
 mod options;
 pub mod evaluation;
 pub mod receiver;
@@ -36,6 +38,7 @@ use crate::surface::{self, Material};
 
 pub use builder::SceneBuilder;
 use camera::Camera;
+use far_field::FarField;
 use media::{Interface, Media};
 pub use options::{Joint, SurfaceOptions};
 use receiver::Receiver;
@@ -65,6 +68,8 @@ pub struct Scene {
     pub emitters: Emitters,
     /// Receivers, in the order of the scene.
     pub receivers: Vec<Receiver>,
+    /// Far fields, in the order of the scene.
+    pub far_fields: Vec<FarField>,
     /// Names of the emitters, in their order.
     pub emitter_names: Vec<String>,
     /// The fixed number of reflections of `[compare]`, where the scene names one.

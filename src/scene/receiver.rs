@@ -60,18 +60,7 @@ impl ReceiverSpec {
     /// # Errors
     /// A name that cannot be a file's on every common system.
     pub fn new(name: impl Into<String>, surface: impl Into<String>) -> Result<Self, Invalid> {
-        let name = name.into();
-        if !is_file_name(&name) {
-            let shown: String = name.chars().take(40).collect();
-            return Err(Invalid::Content {
-                what: "name",
-                found: format!("the receiver name `{}`", shown.escape_debug()),
-                required: "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space, \
-                           at most 200 bytes of UTF-8 (it becomes a file name), and none of the words \
-                           camera, report, con, prn, aux, nul"
-                    .into(),
-            });
-        }
+        let name = check_name("receiver", name.into())?;
         let (side, events) = (ReceiverSide::default(), ReceiverEvents::default());
         Ok(Self { name, surface: surface.into(), cells: None, side, events, grid: None, border_m: 0.0 })
     }
@@ -122,6 +111,26 @@ impl ReceiverSpec {
     pub fn name(&self) -> &str {
         &self.name
     }
+}
+
+/// The name of a result of this kind, if it can be that of a file.
+///
+/// # Errors
+/// A name that cannot be a file's on every common system.
+pub(super) fn check_name(what: &str, name: String) -> Result<String, Invalid> {
+    if is_file_name(&name) {
+        return Ok(name);
+    }
+    let shown: String = name.chars().take(40).collect();
+    Err(Invalid::Content {
+        what: "name",
+        found: format!("the {what} name `{}`", shown.escape_debug()),
+        required:
+            "letters, digits, spaces, `_`, `-` and `.`, not beginning or ending with a dot or a space, \
+                   at most 200 bytes of UTF-8 (it becomes a file name), and none of the words \
+                   camera, report, con, prn, aux, nul"
+                .into(),
+    })
 }
 
 /// Whether this can be the base name of a file on every common system, and only that.

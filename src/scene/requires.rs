@@ -34,6 +34,7 @@ pub fn requirements(scene: &Scene) -> Vec<&'static str> {
         ("colour", scene.is_coloured()),
         ("receiver cells", cells(|c| matches!(c, Cells::Grid { .. }))),
         ("receiver faces", cells(|c| matches!(c, Cells::Faces { .. }))),
+        ("far field", !scene.far_fields.is_empty()),
         ("camera", scene.camera.is_some()),
         ("stored photons", scene.camera.as_ref().is_some_and(|c| c.method == Method::Map)),
     ];

@@ -5,6 +5,7 @@
 //! any split of the photons, bit for bit.
 
 pub mod counts;
+pub mod far_field;
 pub mod receiver;
 pub mod weighted;
 pub mod wide_sum;

@@ -4,11 +4,16 @@
 //! it asks for. A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is
 //! the (u = 0, v = 1) corner. A mesh has a cell a face.
 
-use crate::geometry::{Geometry, Hit};
+use glam::DVec3;
+
+use crate::geometry::{Geometry, Hit, SurfaceId};
+use crate::scene::Scene;
+use crate::scene::far_field::FarField;
 use crate::scene::receiver::{Cells, Receiver, ReceiverEvents, ReceiverSide};
 use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
+use super::far_field::FarFields;
 
 /// Which cells of which receivers an arrival falls into.
 #[derive(Debug)]
@@ -26,6 +31,7 @@ pub struct Receivers<'s> {
     counts: Vec<Counts>,
     /// Of the receivers that have an evaluation grid, its cells.
     grids: Vec<Option<Counts>>,
+    far_fields: FarFields<'s>,
     /// Arrivals on the side of each receiver on which it does not count.
     turned_away: Counts,
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
@@ -101,10 +107,25 @@ impl<'s> Routes<'s> {
 impl<'s> Receivers<'s> {
     /// Counters at zero for these receivers.
     pub fn new(geometry: &'s Geometry, receivers: &'s [Receiver]) -> Self {
+        Self::with_far_fields(geometry, receivers, &[], 0)
+    }
+
+    /// Those of a scene and of its far fields, for a replicate of this many photons.
+    pub fn of_scene(scene: &'s Scene, photons: u64) -> Self {
+        Self::with_far_fields(&scene.geometry, &scene.receivers, &scene.far_fields, photons)
+    }
+
+    fn with_far_fields(
+        geometry: &'s Geometry,
+        receivers: &'s [Receiver],
+        far_fields: &'s [FarField],
+        photons: u64,
+    ) -> Self {
         let counts = receivers.iter().map(|r| Counts::new(r.cells.len())).collect();
         let grids = receivers.iter().map(|r| r.grid.map(|grid| Counts::new(grid.cells()))).collect();
         let [turned_away, other_events] = [0; 2].map(|_| Counts::new(receivers.len()));
-        Self { routes: Routes::new(geometry, receivers), counts, grids, turned_away, other_events }
+        let (routes, far_fields) = (Routes::new(geometry, receivers), FarFields::new(far_fields, photons));
+        Self { routes, counts, grids, far_fields, turned_away, other_events }
     }
 
     /// A handle for one batch of photons; all handles add to the same counters.
@@ -127,6 +148,11 @@ impl<'s> Receivers<'s> {
         self.grids[receiver].as_ref()
     }
 
+    /// The sums of the scene's far fields.
+    pub fn far_fields(&self) -> &FarFields<'s> {
+        &self.far_fields
+    }
+
     /// Arrivals on the side of each receiver on which it does not count.
     pub fn turned_away(&self) -> &Counts {
         &self.turned_away
@@ -141,6 +167,7 @@ impl<'s> Receivers<'s> {
     pub fn clear(&mut self) {
         self.turned_away.clear();
         self.other_events.clear();
+        self.far_fields.clear();
         self.counts.iter_mut().chain(self.grids.iter_mut().flatten()).for_each(Counts::clear);
     }
 }
@@ -172,6 +199,16 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
             },
         );
     }
+
+    #[inline]
+    fn emerge(&mut self, surface: SurfaceId, direction: DVec3) {
+        self.receivers.far_fields.emerge(surface, direction);
+    }
+
+    #[inline]
+    fn escape(&mut self, direction: DVec3) {
+        self.receivers.far_fields.escape(direction);
+    }
 }
 
 /// Adds arrivals of photons that start with a weight to a scene's receivers, in units of a fixed fraction of
@@ -199,8 +236,6 @@ impl<T> Sink<T> for FixedPointSink<'_, '_> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::geometry::{Rectangle, Shape, Surface, Whereabouts, box_mesh};
     use crate::scene::receiver::ReceiverSpec;

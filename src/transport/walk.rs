@@ -38,6 +38,12 @@ pub trait Sink<T = Grey> {
     /// A photon arrives.
     fn arrive(&mut self, arrival: &Arrival<'_, T>);
 
+    /// A photon goes on from the back of a surface through it, out of its front.
+    fn emerge(&mut self, _surface: SurfaceId, _direction: DVec3) {}
+
+    /// A photon leaves the scene.
+    fn escape(&mut self, _direction: DVec3) {}
+
     /// A photon starts; its arrivals follow. `weight` is [`Emission::weight`].
     fn start(&mut self, _weight: f64) {}
 }
@@ -82,6 +88,7 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
             for body in scene.media.bodies_of(&whereabouts) {
                 *exceptions.lost.entry(body).or_default() += 1;
             }
+            sink.escape(direction);
             return if events == 0 { End::Missed } else { End::Escaped };
         };
         let arrival = Arrival { hit, direction, events, carried: &carried, whereabouts: &whereabouts };
@@ -96,6 +103,7 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
         }
         let Interface::Between(indices) = reached.interface else {
             // The same medium on both sides.
+            emerge(scene, hit, direction, sink);
             scene.media.leave(&mut whereabouts, hit, hit.other_side());
             origin = hit.position;
             guarded += 1;
@@ -116,6 +124,9 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
                     *exceptions.corrected_directions.entry(hit.surface).or_default() += 1;
                 }
                 went_through = through;
+                if through {
+                    emerge(scene, hit, onward, sink);
+                }
                 let side = if hit.front == through { Side::Back } else { Side::Front };
                 scene.media.leave(&mut whereabouts, hit, side);
                 (origin, direction) = (hit.position, onward);
@@ -134,6 +145,19 @@ pub fn walk_until<C: Chooser, S: Sink<T>, T: Throughput>(
         }
     }
     End::Killed
+}
+
+/// Goes on through the faces that are crossed here, out of the front of those whose back it came to.
+#[inline]
+fn emerge<S: Sink<T>, T>(scene: &Scene, hit: &Hit, direction: DVec3, sink: &mut S) {
+    if !hit.front {
+        sink.emerge(hit.surface, direction);
+    }
+    if hit.touch.is_some() {
+        for joint in scene.geometry.joint_hits(hit).filter(|joint| !joint.front) {
+            sink.emerge(joint.surface, direction);
+        }
+    }
 }
 
 /// The arrivals at the faces that are crossed at once with the one of this arrival.

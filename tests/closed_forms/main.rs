@@ -12,6 +12,7 @@ mod direct;
 mod disc;
 mod discontinuous;
 mod emitter_colour;
+mod far_field;
 mod grid;
 mod interrupted;
 mod lengths;

@@ -10,6 +10,7 @@ mod canonical;
 pub mod count;
 pub mod document;
 mod emitter;
+mod far_field;
 mod heightfield;
 mod loader;
 mod material;
@@ -215,6 +216,9 @@ impl SceneFile {
         }
         for (receiver, place) in parts.receivers.into_iter().flatten() {
             scene.at(place).receiver(receiver);
+        }
+        for (far_field, place) in parts.far_fields.into_iter().flatten() {
+            scene.at(place).far_field(far_field);
         }
         if let Some((camera, medium, place)) = parts.camera {
             scene.at(place).camera(camera);

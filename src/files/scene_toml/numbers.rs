@@ -124,6 +124,24 @@ impl<'t> Table<'t, '_> {
         self.number_in(key, value, interval).map(DVec3::splat)
     }
 
+    /// Angles in degrees: one number, which is a step, or a list of them.
+    pub fn step_or_list(&mut self, key: &'static str, required: &str) -> Option<Vec<f64>> {
+        /// More angles than any table that is accepted has.
+        const MOST: usize = 1 << 16;
+        let value = self.take(key)?;
+        let Some(items) = value.get_ref().as_array() else {
+            return match number_of(value.get_ref()) {
+                Some(step) => Some(vec![step]),
+                None => self.no_number(key, value, required),
+            };
+        };
+        let angles: Option<Vec<f64>> = items.iter().map(|item| number_of(item.get_ref())).collect();
+        match angles.filter(|angles| (2..=MOST).contains(&angles.len()) || angles[..] == [0.0]) {
+            Some(angles) => Some(angles),
+            None => self.wrong(key, value, Kind::Range, required),
+        }
+    }
+
     /// A whole number in this range.
     pub fn integer(&mut self, key: &'static str, low: u64, high: u64, words: &str) -> Option<u64> {
         let value = self.take(key)?;

@@ -7,9 +7,10 @@ use super::document::Document;
 use super::names::Names;
 use super::part::{EmitterPart, MaterialPart, SurfacePart};
 use super::table::{Placed, Table, shown};
-use super::{camera, emitter, material, receiver, surface};
+use super::{camera, emitter, far_field, material, receiver, surface};
 use crate::error::{Kind, Place};
 use crate::scene::camera::Camera;
+use crate::scene::far_field::FarFieldSpec;
 use crate::scene::media::Medium;
 use crate::scene::receiver::ReceiverSpec;
 
@@ -39,6 +40,7 @@ pub(super) struct Parts {
     pub materials: Vec<Option<(MaterialPart, Place)>>,
     pub surfaces: Vec<Option<(SurfacePart, Place)>>,
     pub receivers: Vec<Option<(ReceiverSpec, Place)>>,
+    pub far_fields: Vec<Option<(FarFieldSpec, Place)>>,
     pub camera: Option<(Camera, Option<Medium>, Place)>,
     pub ambient: Option<Medium>,
     pub compared_reflections: Option<u32>,
@@ -101,8 +103,14 @@ impl Parts {
         let receivers = read_each(parts_named(&mut root, "receiver"), |table, index| {
             receiver::read(table, index, &mut names, &surface_names, &surfaces)
         });
-        if root.place_of("receiver").is_none() && root.place_of("camera").is_none() {
-            let required = "at least one [[receiver]], or a [camera], or nothing is measured but the ledger";
+        // Their names are of one kind: those of files.
+        let count = receivers.len();
+        let far_fields = read_each(parts_named(&mut root, "far_field"), |table, index| {
+            far_field::read(table, count + index, &mut names, &surface_names)
+        });
+        let measures = ["receiver", "far_field", "camera"];
+        if measures.iter().all(|key| root.place_of(key).is_none()) {
+            let required = "at least one [[receiver]], [[far_field]] or a [camera], or nothing is measured but the ledger";
             document.warn_at(start, Kind::Missing, "a scene without [[receiver]]", required);
         }
         let camera = root.table("camera", "[camera]").and_then(|mut table| {
@@ -120,6 +128,7 @@ impl Parts {
             materials,
             surfaces,
             receivers,
+            far_fields,
             camera,
             ambient,
             compared_reflections,

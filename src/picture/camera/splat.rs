@@ -19,7 +19,7 @@ use glam::{DVec2, DVec3};
 
 use crate::error::Result;
 use crate::estimate::replicates::FEWEST_HITS;
-use crate::geometry::{Hit, Side, Whereabouts};
+use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
 use crate::picture::photon_map::Channels;
 use crate::picture::photon_map::sink::scattering_surfaces;
 use crate::scene::Scene;
@@ -261,6 +261,16 @@ impl<T: Channels<C>, const C: usize> Sink<T> for SplatSink<'_, '_, C> {
         if self.splat.scatters[arrival.hit.surface.0 as usize] {
             self.joined += u64::from(self.splat.join(arrival));
         }
+    }
+
+    #[inline]
+    fn emerge(&mut self, surface: SurfaceId, direction: DVec3) {
+        <ReceiverSink<'_, '_> as Sink<T>>::emerge(&mut self.receivers, surface, direction);
+    }
+
+    #[inline]
+    fn escape(&mut self, direction: DVec3) {
+        <ReceiverSink<'_, '_> as Sink<T>>::escape(&mut self.receivers, direction);
     }
 }
 

@@ -3,6 +3,9 @@
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+use glam::DVec3;
+
+use crate::geometry::SurfaceId;
 use crate::scene::Scene;
 use crate::surface::{Grey, Material, Rgb, Throughput};
 use crate::transport::{Arrival, Sink};
@@ -169,6 +172,16 @@ impl<T: Channels<C>, const C: usize> Sink<T> for PhotonSink<'_, '_, C> {
         }
         self.scattered = true;
     }
+
+    #[inline]
+    fn emerge(&mut self, surface: SurfaceId, direction: DVec3) {
+        <ReceiverSink<'_, '_> as Sink<T>>::emerge(&mut self.receivers, surface, direction);
+    }
+
+    #[inline]
+    fn escape(&mut self, direction: DVec3) {
+        <ReceiverSink<'_, '_> as Sink<T>>::escape(&mut self.receivers, direction);
+    }
 }
 
 impl<const C: usize> PhotonSink<'_, '_, C> {
@@ -194,8 +207,6 @@ impl<const C: usize> Drop for PhotonSink<'_, '_, C> {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::geometry::{Geometry, Rectangle, Shape, Surface, Whereabouts};
     use crate::tally::Receivers;
