@@ -86,11 +86,15 @@ fn nodes_within(photometry: &Photometry, photons: u64) -> (usize, usize) {
     (within, errors.len())
 }
 
+/// Nodes of the tables that come back.
+const MOST_NODES: usize = 10_000;
+
 fn all_come_back(files: impl Iterator<Item = impl AsRef<Path>>, photons: u64) -> usize {
     let (mut tables, mut within, mut nodes) = (0, 0, 0);
     for path in files {
         let photometry = lm63::read(path).unwrap();
-        if is_a_far_field(&photometry) {
+        // Larger ones would take minutes, and are no other case.
+        if is_a_far_field(&photometry) && photometry.web.full_grid().intensity_cd.len() < MOST_NODES {
             let (some, all) = nodes_within(&photometry, photons);
             println!("{}: {some} of {all}", photometry.file);
             (tables, within, nodes) = (tables + 1, within + some, nodes + all);
@@ -214,8 +218,14 @@ fn other_types_become_type_c() {
             (rms, s.unresolved.unwrap().value)
         };
         let ((wide, wide_unresolved), (fine, fine_unresolved)) = (off(10.0), off(2.5));
-        assert!(fine < 0.4 * wide && fine < 0.02, "{name}: {wide} {fine}");
-        assert!(fine_unresolved < 0.4 * wide_unresolved, "{name}: {wide_unresolved} {fine_unresolved}");
+        assert!(fine < 0.003, "{name}: {wide} {fine}");
+        // The headlamp's beam is narrower than ten degrees; the floodlight needs no finer steps.
+        if name == "headlamp_a.ies" {
+            assert!(fine < 0.1 * wide && wide > 0.01, "{name}: {wide} {fine}");
+            assert!(fine_unresolved < 0.2 * wide_unresolved, "{name}: {wide_unresolved} {fine_unresolved}");
+        } else {
+            assert!(wide < 0.003 && wide_unresolved < 0.01, "{name}: {wide} {wide_unresolved}");
+        }
     }
 }
 
@@ -231,7 +241,7 @@ fn a_single_direction_is_exact() {
         let text = format!(
             r#"
 [[emitter]]
-type = "beam"
+type = "collimated"
 flux_lm = 10
 position = [0, 0, 0]
 aim = {aim}
@@ -342,12 +352,9 @@ fn steps_are_chosen_by_what_the_light_shows() {
     let step = |name: &str, photons: u64| {
         let scene = bare(&lm63::read(data::own_file(name)).unwrap(), spec());
         let s = FarFieldStatistics::new(&scene, &run(&scene, photons, 8), 0);
-        assert!(
-            s.unresolved.unwrap().value < 1.5 * s.noise.unwrap() + 1e-3,
-            "{name}: {:?} {:?}",
-            s.unresolved,
-            s.noise
-        );
+        let (unresolved, noise) = (s.unresolved.unwrap(), s.noise.unwrap());
+        let most = 1.5 * noise + 2.0 * unresolved.standard_error.unwrap();
+        assert!(unresolved.value <= most, "{name}: {unresolved:?} {noise}");
         s.widest_step_deg
     };
     let (few, many) = (step("spot.ies", 1 << 12), step("spot.ies", 1 << 20));
@@ -361,7 +368,7 @@ fn light_out_of_a_surface_is_counted_there() {
     let scene = scene(
         r#"
 [[emitter]]
-type = "beam"
+type = "collimated"
 flux_lm = 10
 position = [0, 0, 0.1]
 radius = 0.01
@@ -448,7 +455,7 @@ fn what_cannot_be_is_refused_in_words() {
     };
     for (keys, words) in [
         ("axis = [0, 0, -1]\nc_deg = 7", "c_deg = 7; required: a step that divides 360 degrees"),
-        ("axis = [0, 0, -1]\ngamma_deg = [0, 30]", "gamma_deg with 2 angles from 0.0 to 30.0"),
+        ("axis = [0, 0, -1]\ngamma_deg = [0, 30]", "gamma_deg = [0, 30]; required: a step that divides 90 degrees"),
         ("axis = [0, 0, -1]\ngamma_deg = \"1\"", "write it without quotes: 1"),
         ("axis = [0, 0, 0]", "axis = [0, 0, 0]; required: a direction [x, y, z] that is not zero"),
         ("axis = [0, 0, 1]\nup = [0, 0, 2]", "not parallel to axis"),
