@@ -7,12 +7,14 @@
 
 pub mod axes;
 pub mod beam;
+pub mod export;
 pub mod flux;
 pub mod opening;
 pub mod summary;
 pub mod unfold;
 pub mod web;
 
+pub use export::Export;
 pub use opening::LuminousOpening;
 pub use summary::Summary;
 pub use unfold::FullGrid;
