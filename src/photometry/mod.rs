@@ -9,13 +9,18 @@ pub mod axes;
 pub mod beam;
 pub mod export;
 pub mod flux;
+pub mod luminance;
+pub mod nema;
 pub mod opening;
+pub mod sheet;
 pub mod summary;
 pub mod unfold;
 pub mod web;
+pub mod zones;
 
 pub use export::Export;
 pub use opening::LuminousOpening;
+pub use sheet::DataSheet;
 pub use summary::Summary;
 pub use unfold::FullGrid;
 pub use web::{PhotometricType, Web};

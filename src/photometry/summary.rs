@@ -1,7 +1,7 @@
 //! What a lighting engineer asks of a photometric file, in one record.
 
 use super::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_across_deg, lobe_angle_deg};
-use super::{Photometry, Tilt, TiltTable, flux};
+use super::{DataSheet, Photometry, Tilt, TiltTable, flux};
 use serde::Serialize;
 
 /// The record of `caustix photometry --json`.
@@ -67,6 +67,9 @@ pub struct Summary {
     pub input_watts: f64,
     /// `flux_with_factors_lm` per watt of input; `None` without a power.
     pub efficacy_lm_w: Option<f64>,
+    /// Zones, flux code, further angles, luminances.
+    #[serde(flatten)]
+    pub sheet: DataSheet,
     /// Labels in the order of the file.
     pub labels: Vec<Label>,
     /// What was tolerated.
@@ -178,6 +181,7 @@ impl Summary {
             field_angle_across_deg: lobe_angle_across_deg(web, FIELD_SHARE),
             input_watts: watts,
             efficacy_lm_w: (watts > 0.0).then(|| flux_with_factors_lm / watts),
+            sheet: DataSheet::new(photometry, flux_lm),
             labels: photometry
                 .labels
                 .iter()
@@ -232,6 +236,17 @@ mod tests {
             "field_angle_deg",
             "input_watts",
             "efficacy_lm_w",
+            "flux_downward_lm",
+            "flux_upward_lm",
+            "downward_percent",
+            "zonal_lumens",
+            "cie_flux_code",
+            "beam_angle_at_max_deg",
+            "field_angle_at_max_deg",
+            "nema_type",
+            "max_candela_per_klm",
+            "luminance",
+            "absent",
             "warnings",
         ];
         expected.sort_unstable();
@@ -239,6 +254,41 @@ mod tests {
         assert!(json["max_at"]["vertical_deg"].is_number() && json["max_at"]["horizontal_deg"].is_number());
         assert!(json["luminous_opening"]["shape"].is_string());
         assert_eq!(json["luminous_opening"]["size_m"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn what_is_not_given_says_why() {
+        let of = |text: &str| {
+            serde_json::to_value(Summary::new(&lm63::parse(text.as_bytes(), "x.ies").unwrap())).unwrap()
+        };
+        let cone = of(SMALL);
+        let keys = |json: &serde_json::Value| {
+            json["absent"].as_object().unwrap().keys().cloned().collect::<Vec<_>>()
+        };
+        assert_eq!(keys(&cone), ["luminance"]);
+        // 200 cd of a cone of 147.01 lm, absolute: 1360.45 cd/klm; 72 degrees of field are type 5; all of it goes down.
+        assert!(
+            (cone["max_candela_per_klm"].as_f64().unwrap() - 2e5 / cone["flux_lm"].as_f64().unwrap()).abs()
+                < 1e-9
+        );
+        assert_eq!(cone["nema_type"]["types"], serde_json::json!([5, 5]));
+        assert_eq!(cone["downward_percent"], 100.0);
+        assert_eq!(cone["flux_downward_lm"], cone["flux_lm"]);
+        let flood = of("IESNA:LM-63-2002\nTILT=NONE\n1 0 1 2 2 2 2 1 1 0\n1 1 0\n-90 90\n-90 90\n0 0 0 0\n");
+        let dark = [
+            "beam_angle_at_max_deg",
+            "cie_flux_code",
+            "downward_percent",
+            "field_angle_at_max_deg",
+            "flux_downward_lm",
+            "flux_upward_lm",
+            "luminance",
+            "max_candela_per_klm",
+            "nema_type",
+            "zonal_lumens",
+        ];
+        assert_eq!(keys(&flood), dark);
+        assert!(dark.iter().all(|key| flood[key].is_null()), "{flood}");
     }
 
     #[test]

@@ -65,7 +65,7 @@ impl Web {
 }
 
 /// Radians, the half and the full turn exact.
-fn radians(degrees: f64) -> f64 {
+pub(super) fn radians(degrees: f64) -> f64 {
     match degrees {
         180.0 => PI,
         360.0 => TAU,
