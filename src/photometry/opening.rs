@@ -77,6 +77,8 @@ pub struct LuminousOpening {
     pub shape: OpeningShape,
     /// Extent of its bounding box in metres: width (across H = 0), length (along H = 0), height.
     pub size_m: [f64; 3],
+    /// EULUMDAT: luminous heights towards C0, C90, C180 and C270, m. `None` in LM-63, whose height is the same all round.
+    pub heights_m: Option<[f64; 4]>,
 }
 
 impl LuminousOpening {
@@ -115,7 +117,7 @@ impl LuminousOpening {
             ['+', '0', '-'] => (HorizontalCylinderAcross, [w, h, h], true),
             _ => (BoundingBox, [w, l, h], false),
         };
-        (Self { shape, size_m }, defined)
+        (Self { shape, size_m, heights_m: None }, defined)
     }
 }
 
