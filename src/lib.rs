@@ -89,8 +89,10 @@ pub use rooms::*;
 pub use error::warning::{Severity, Warning};
 pub use error::{Diagnostic, Invalid, Kind, Place, Result};
 // Photometric files:
-pub use files::lm63::{parse as parse_photometry, read as read_photometry};
-pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt, Web};
+pub use files::photometric::{parse as parse_photometry, read as read_photometry};
+pub use photometry::{
+    EulumdatHead, Format, LampSet, LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt, Web,
+};
 // Scattering tables:
 pub use files::bsdf::{parse as parse_scattering, read as read_scattering};
 pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};

@@ -12,7 +12,7 @@ use caustix::files::folder::Folder;
 use caustix::files::obj::{ObjOptions, parse_obj};
 use caustix::files::parts::{Found, Parts};
 use caustix::files::scene_toml::{self, SceneFile, count::parse_count};
-use caustix::files::{bsdf, height_image, lm63, photon_map};
+use caustix::files::{bsdf, height_image, photometric, photon_map};
 use caustix::photometry::Summary;
 use caustix::picture::check_saved;
 use caustix::scene::Scene;
@@ -126,7 +126,7 @@ fn is_read<T>(read: Result<T, Diagnostic>) -> bool {
 }
 
 fn photometry(bytes: &[u8], tilt: &[u8]) -> bool {
-    let read = lm63::parse_with(bytes, "lamp.ies", &mut |_| Ok(Rc::from(tilt)));
+    let read = photometric::parse_with(bytes, "lamp.ies", &mut |_| Ok(Rc::from(tilt)));
     if let Ok(photometry) = &read {
         photometry.warnings.iter().for_each(told);
         let summary = Summary::new(photometry);

@@ -1,6 +1,6 @@
 //! `caustix photometry`: what a lighting engineer wants to read about a file.
 
-use crate::files::lm63;
+use crate::files::photometric;
 use crate::photometry::Summary;
 use crate::plot::candela;
 use crate::report::json::json;
@@ -10,7 +10,7 @@ use super::{Done, PhotometryArgs, exit, plot, print, warn};
 
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &PhotometryArgs) -> Done {
-    let photometry = lm63::read(&args.file)?;
+    let photometry = photometric::read(&args.file)?;
     let summary = Summary::new(&photometry);
     plot(args.plot.as_ref(), &args.file, || candela::drawing(&photometry, &summary))?;
     if args.json {

@@ -18,6 +18,7 @@ pub mod obj;
 mod obj_text;
 pub mod outputs;
 pub mod parts;
+pub mod photometric;
 pub mod photon_map;
 #[cfg(feature = "plots")]
 pub mod png;

@@ -57,14 +57,19 @@ impl LuminousOpening {
     pub fn projected_m2(&self, vertical_deg: f64, horizontal_deg: f64) -> f64 {
         use OpeningShape::*;
         let [width, length, height] = self.size_m;
-        let [x, y, z] = direction(vertical_deg, horizontal_deg).map(f64::abs);
+        let towards = direction(vertical_deg, horizontal_deg);
+        let [x, y, z] = towards.map(f64::abs);
         // Extent across the direction of an ellipse with these axes, which lies in the plane of a and b.
         let ellipse = |size_a: f64, size_b: f64, a: f64, b: f64| libm::hypot(size_a * b, size_b * a);
         let disc = |a: f64, b: f64| 0.25 * PI * a * b;
         match self.shape {
             Point => 0.0,
             Rectangle | VerticalRectangle | Box | BoundingBox => {
-                length * width * z + width * height * x + length * height * y
+                // The sides that are seen, towards C0 or C180 and C90 or C270.
+                let [c0, c90, c180, c270] = self.heights_m.unwrap_or([height; 4]);
+                let side = |towards: f64, ahead: f64, behind: f64| if towards > 0.0 { ahead } else { behind };
+                let [of_x, of_y] = [side(towards[0], c0, c180), side(towards[1], c90, c270)];
+                length * width * z + width * of_x * x + length * of_y * y
             }
             Disk | Ellipse => disc(length, width) * z,
             VerticalDisk => disc(width, height) * x,
@@ -100,7 +105,7 @@ fn direction(vertical_deg: f64, horizontal_deg: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::lm63;
+    use crate::files::photometric;
     use OpeningShape::*;
 
     /// The silhouette by its shadow: of a convex shape half the integral of |n . d| over its surface, here by
@@ -191,7 +196,7 @@ mod tests {
             (Sphere, [width, width, width]),
             (Ellipsoid, [width, length, height]),
         ] {
-            let opening = LuminousOpening { shape, size_m };
+            let opening = LuminousOpening { shape, size_m, heights_m: None };
             let solid = points(shape, [size_m[1], size_m[0], size_m[2]]);
             for (v, h) in [(0.0, 0.0), (20.0, 10.0), (65.0, 130.0), (90.0, 0.0), (90.0, 90.0), (115.0, 255.0)]
             {
@@ -208,6 +213,15 @@ mod tests {
     }
 
     #[test]
+    fn each_side_has_its_height() {
+        let heights_m = Some([0.1, 0.2, 0.3, 0.4]);
+        let opening = LuminousOpening { shape: Box, size_m: [2.0, 3.0, 0.4], heights_m };
+        for (h, expected) in [(0.0, 2.0 * 0.1), (90.0, 3.0 * 0.2), (180.0, 2.0 * 0.3), (270.0, 3.0 * 0.4)] {
+            assert!((opening.projected_m2(90.0, h) - expected).abs() < 1e-15, "{h}");
+        }
+    }
+
+    #[test]
     fn a_cosine_table_over_a_flat_opening_has_one_luminance() {
         let v: Vec<f64> = (0..=18).map(|i| f64::from(i) * 5.0).collect();
         let candela: Vec<String> = v.iter().map(|v| format!("{}", 500.0 * v.to_radians().cos())).collect();
@@ -218,7 +232,7 @@ mod tests {
                 angles.join(" "),
                 candela.join(" ")
             );
-            lm63::parse(text.as_bytes(), "small.ies").unwrap()
+            photometric::parse(text.as_bytes(), "small.ies").unwrap()
         };
         let table = LuminanceTable::new(&file("0.5 1 0", "1")).unwrap();
         assert_eq!((table.c_deg.len(), table.gamma_deg.len()), (24, 9));

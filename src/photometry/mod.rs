@@ -1,12 +1,13 @@
 //! Photometric files: reading, symmetry, flux, summary.
 //!
-//! A file is read once and checked once ([`lm63::read`]); what comes out is plain data. Intensities in [`Web`] are
-//! the file's values times its candela multiplier; [`Photometry::factor`] holds what stands beside them (ballast
-//! factor, and field 12 where it is a factor). Degrees live here and in no later module: [`Web::full_grid`] hands
-//! out radians.
+//! A file is read once and checked once (`files::photometric`); what comes out is plain data, the same for IES LM-63
+//! and EULUMDAT. Intensities in [`Web`] are the file's values times its candela multiplier; [`Photometry::factor`]
+//! holds what stands beside them (ballast factor, and field 12 where it is a factor). Degrees live here and in no
+//! later module: [`Web::full_grid`] hands out radians.
 
 pub mod axes;
 pub mod beam;
+pub mod eulumdat;
 pub mod export;
 pub mod flux;
 pub mod luminance;
@@ -14,10 +15,12 @@ pub mod nema;
 pub mod opening;
 pub mod sheet;
 pub mod summary;
+pub mod turn;
 pub mod unfold;
 pub mod web;
 pub mod zones;
 
+pub use eulumdat::{EulumdatHead, LampSet};
 pub use export::Export;
 pub use opening::LuminousOpening;
 pub use sheet::DataSheet;
@@ -26,6 +29,33 @@ pub use unfold::FullGrid;
 pub use web::{PhotometricType, Web};
 
 use crate::error::Diagnostic;
+
+/// The format of a photometric file, and its edition where it has editions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// IES LM-63, by the rules of this edition.
+    Lm63(Revision),
+    /// EULUMDAT (.ldt), which has no editions.
+    Eulumdat,
+}
+
+impl Format {
+    /// Name without the edition.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lm63(_) => "IES LM-63",
+            Self::Eulumdat => "EULUMDAT",
+        }
+    }
+
+    /// The edition of LM-63; `None` for EULUMDAT.
+    pub fn revision(self) -> Option<Revision> {
+        match self {
+            Self::Lm63(revision) => Some(revision),
+            Self::Eulumdat => None,
+        }
+    }
+}
 
 /// The edition of LM-63 whose rules a file was read by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -88,32 +118,43 @@ pub struct TiltTable {
 pub struct Photometry {
     /// The file, as the caller named it.
     pub file: String,
-    /// The edition whose rules were applied.
-    pub revision: Revision,
+    /// The format, with the edition whose rules were applied.
+    pub format: Format,
     /// Keyword (without brackets; empty for a free label line) and text, in file order; `[MORE]` lines are joined
-    /// to the keyword they continue, with a line feed.
+    /// to the keyword they continue, with a line feed. EULUMDAT's lines have the keywords of LM-63 that mean the same
+    /// (docs/PHOTOMETRY.md); blank ones are left out.
     pub labels: Vec<(String, String)>,
     /// Tilt of the lamp; never multiplied into the intensities.
     pub tilt: Tilt,
-    /// Number of lamps.
+    /// Number of lamps; of EULUMDAT in the lamp set taken, without its sign.
     pub lamps: f64,
-    /// Lumens per lamp; `None` for absolute photometry (-1 in the file). It never scales the intensities.
+    /// Lumens per lamp; `None` for absolute photometry (LM-63: -1 lumens; EULUMDAT: a negative number of lamps).
+    /// It never scales the intensities of LM-63.
     pub lumens_per_lamp: Option<f64>,
-    /// Candela multiplier, already in [`Web::candela`].
+    /// The lamp sets of EULUMDAT, which are alternatives; none in LM-63.
+    pub lamp_sets: Vec<LampSet>,
+    /// Which of them was taken, from 0; 0 where there are none.
+    pub lamp_set: usize,
+    /// What only EULUMDAT says.
+    pub eulumdat: Option<EulumdatHead>,
+    /// Candela multiplier, already in [`Web::candela`]; of EULUMDAT the conversion factor times the lumens of the lamp set
+    /// taken / 1000.
     pub multiplier: f64,
-    /// Ballast factor, not in [`Web::candela`].
+    /// Ballast factor, not in [`Web::candela`]; 1 in EULUMDAT.
     pub ballast_factor: f64,
-    /// Field 12: ballast-lamp photometric factor (1986, 1991), reserved (1995, 2002), file generation type (2019).
+    /// Field 12: ballast-lamp photometric factor (1986, 1991), reserved (1995, 2002), file generation type (2019). 1 in
+    /// EULUMDAT, which has no such field.
     pub field12: f64,
-    /// Field 12 as written: the 2019 code is text, not a quantity.
+    /// Field 12 as written: the 2019 code is text, not a quantity. Empty in EULUMDAT.
     pub field12_text: String,
-    /// Input power, watts; 0 where the file does not know it.
+    /// Input power, watts; 0 where the file does not know it. Of EULUMDAT that of the lamp set taken.
     pub input_watts: f64,
     /// Luminous opening.
     pub opening: LuminousOpening,
     /// The intensities.
     pub web: Web,
-    /// `[_TOTALLUMINAIRELUMENS]`, lm, if the file declares it and it can be read: the maker's own number, without ballast factor.
+    /// The maker's own number, lm, if the file declares it and it can be read: `[_TOTALLUMINAIRELUMENS]`, without ballast
+    /// factor; of EULUMDAT lumens of the lamp set x light output ratio.
     pub flux_declared_lm: Option<f64>,
     /// What is wrong with the file and was tolerated.
     pub warnings: Vec<Diagnostic>,
@@ -122,16 +163,16 @@ pub struct Photometry {
 impl Photometry {
     /// Factor from [`Web::candela`] to what the luminaire emits: ballast factor, times field 12 in 1986 and 1991.
     pub fn factor(&self) -> f64 {
-        if self.revision.field12_is_factor() {
-            self.ballast_factor * self.field12
-        } else {
-            self.ballast_factor
+        match self.format {
+            Format::Lm63(revision) if revision.field12_is_factor() => self.ballast_factor * self.field12,
+            _ => self.ballast_factor,
         }
     }
 
     /// Lumens of all lamps together, as the file declares them; `None` for absolute photometry, and where they are 0.
     pub fn lamps_lm(&self) -> Option<f64> {
-        self.lumens_per_lamp.map(|each| self.lamps * each).filter(|&lm| lm > 0.0)
+        let of_set = self.lamp_sets.get(self.lamp_set).map(|set| set.flux_lm);
+        self.lumens_per_lamp.map(|each| of_set.unwrap_or(self.lamps * each)).filter(|&lm| lm > 0.0)
     }
 
     /// Text of the first label with this keyword (case ignored, no brackets).

@@ -95,13 +95,14 @@ fn lamps(photometry: &Photometry) -> Lamps {
     }
 }
 
-/// Thousands of lumens that intensities are given for: of the lamps, or in absolute photometry of the luminaire, whose flux
-/// by the trapezoid is given; `None` where that is 0.
+/// Thousands of lumens that intensities are given for: of the lamps, or in absolute photometry of the luminaire (EULUMDAT: as
+/// its lamp set states; LM-63: by the trapezoid, as given here); `None` where they are 0.
 pub fn klm(photometry: &Photometry, flux_lm: f64) -> Option<f64> {
-    let lm = match lamps(photometry) {
-        Lamps::Absolute => flux_lm,
-        Lamps::Lumens(lm) => lm,
-        Lamps::Unknown => 0.0,
+    let of_set = photometry.lamp_sets.get(photometry.lamp_set).map(|set| set.flux_lm);
+    let lm = match (of_set, lamps(photometry)) {
+        (Some(lm), _) | (None, Lamps::Lumens(lm)) => lm,
+        (None, Lamps::Absolute) => flux_lm,
+        (None, Lamps::Unknown) => 0.0,
     };
     (lm > 0.0).then(|| 1e-3 * lm)
 }

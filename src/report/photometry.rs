@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::files::lm63::generation_type;
-use crate::photometry::{Photometry, Revision, Summary, Tilt};
+use crate::photometry::{Format, Photometry, Revision, Summary, Tilt};
 
 use super::numbers::printable;
 
@@ -15,7 +15,7 @@ pub fn text(photometry: &Photometry, summary: &Summary) -> String {
         let _infallible = writeln!(out, "{name:<20}{value}");
     };
     line("file", photometry.file.clone());
-    line("format", format!("{} {}, type {}", summary.format, edition(photometry), summary.photometric_type));
+    line("format", format!("{}, type {}", format_and_edition(photometry), summary.photometric_type));
     for keyword in ["MANUFAC", "LUMINAIRE", "LUMCAT", "LAMP"] {
         if let Some(text) = photometry.label(keyword).filter(|text| !text.is_empty()) {
             line(&keyword.to_ascii_lowercase(), printable(text));
@@ -61,19 +61,23 @@ pub fn text(photometry: &Photometry, summary: &Summary) -> String {
     out
 }
 
-fn edition(photometry: &Photometry) -> String {
-    let name = photometry.revision.name();
-    match generation_type(&photometry.field12_text).filter(|_| photometry.revision == Revision::Y2019) {
-        Some(kind) => format!("{name} ({kind})"),
-        None => name.to_owned(),
+fn format_and_edition(photometry: &Photometry) -> String {
+    let name = photometry.format.name();
+    let Some(revision) = photometry.format.revision() else { return name.to_owned() };
+    let year = revision.name();
+    match generation_type(&photometry.field12_text).filter(|_| revision == Revision::Y2019) {
+        Some(kind) => format!("{name} {year} ({kind})"),
+        None => format!("{name} {year}"),
     }
 }
 
 fn factors(photometry: &Photometry) -> String {
-    if photometry.revision.field12_is_factor() {
-        format!("x ballast {} x ballast-lamp {}", photometry.ballast_factor, photometry.field12)
-    } else {
-        format!("x ballast {}", photometry.ballast_factor)
+    match photometry.format {
+        Format::Lm63(revision) if revision.field12_is_factor() => {
+            format!("x ballast {} x ballast-lamp {}", photometry.ballast_factor, photometry.field12)
+        }
+        Format::Lm63(_) => format!("x ballast {}", photometry.ballast_factor),
+        Format::Eulumdat => "EULUMDAT has none".to_owned(),
     }
 }
 
@@ -110,12 +114,12 @@ fn degrees(angles_deg: [Option<f64>; 2], planes: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::lm63;
+    use crate::files::photometric;
 
     #[test]
     fn the_report_names_quantities_and_units() {
         let file = "IESNA91\n[LUMINAIRE] a\x1b[31mb\n[MORE] c\nTILT=NONE\n1 -1 2 3 1 1 2 -0.1 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0 9\n";
-        let photometry = lm63::parse(file.as_bytes(), "small.ies").unwrap();
+        let photometry = photometric::parse(file.as_bytes(), "small.ies").unwrap();
         let report = text(&photometry, &Summary::new(&photometry));
         for line in [
             "luminaire           a [31mb c",

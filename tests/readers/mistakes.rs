@@ -2,8 +2,8 @@
 
 use caustix::error::{Diagnostic, Kind};
 use caustix::files::bytes::Base;
-use caustix::files::lm63;
 use caustix::files::obj::{ObjOptions, parse_obj};
+use caustix::files::photometric;
 use caustix::files::scene_toml;
 use caustix::photometry::Summary;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn lamp(candela: &str, opening: &str) -> String {
 }
 
 fn ies(text: &str) -> Result<caustix::photometry::Photometry, Diagnostic> {
-    lm63::parse(text.as_bytes(), "a.ies")
+    photometric::parse(text.as_bytes(), "a.ies")
 }
 
 #[test]

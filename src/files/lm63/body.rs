@@ -5,7 +5,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::files::lm63::tokens::{Number, Tokens};
 use crate::photometry::axes::{Axis, AxisNote, check_axes};
 use crate::photometry::opening::sign;
-use crate::photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Tilt, Web};
+use crate::photometry::{Format, LuminousOpening, PhotometricType, Photometry, Revision, Tilt, Web};
 
 /// Angles on one axis, and pairs of a tilt table, that are read at most. The finest real table has 721.
 const MAX_ANGLES: usize = 100_000;
@@ -144,11 +144,14 @@ impl<'a> Reader<'a> {
         self.check_poles(&web, [&vertical, &horizontal]);
         Ok(Photometry {
             file: String::new(),
-            revision,
+            format: Format::Lm63(revision),
             labels: Vec::new(),
             tilt: Tilt::None,
             lamps,
             lumens_per_lamp: (lumens_per_lamp >= 0.0).then_some(lumens_per_lamp),
+            lamp_sets: Vec::new(),
+            lamp_set: 0,
+            eulumdat: None,
             multiplier,
             ballast_factor,
             field12: field12.value,

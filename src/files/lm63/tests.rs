@@ -1,9 +1,11 @@
 //! Every quirk on a small file of its own.
 
+use crate::error::Diagnostic;
 use crate::files::lm63::*;
+use crate::files::photometric::{parse, read};
 use crate::photometry::opening::OpeningShape;
 use crate::photometry::web::Symmetry;
-use crate::photometry::{PhotometricType, Revision, Summary, Tilt, TiltTable};
+use crate::photometry::{Format, PhotometricType, Revision, Summary, Tilt, TiltTable};
 
 /// A small file in parts, so that each test changes one of them.
 #[derive(Clone)]
@@ -84,7 +86,10 @@ fn at(error: &Diagnostic) -> (Kind, usize, usize) {
 fn a_plain_file_reads_without_warnings() {
     let p = SMALL.read();
     assert_eq!(p.warnings, []);
-    assert_eq!((p.revision, &p.tilt, p.lamps, p.lumens_per_lamp), (Revision::Y2002, &Tilt::None, 1.0, None));
+    assert_eq!(
+        (p.format, &p.tilt, p.lamps, p.lumens_per_lamp),
+        (Format::Lm63(Revision::Y2002), &Tilt::None, 1.0, None)
+    );
     assert_eq!((p.multiplier, p.ballast_factor, p.field12, p.input_watts), (1.0, 1.0, 1.0, 10.0));
     assert_eq!(p.web.photometric_type, PhotometricType::C);
     assert_eq!(

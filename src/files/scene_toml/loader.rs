@@ -10,7 +10,7 @@ use super::table::Placed;
 use crate::error::{Diagnostic, Result};
 use crate::files::bytes::Files;
 use crate::files::obj::{Checked, check_obj};
-use crate::files::{bsdf, lm63};
+use crate::files::{bsdf, photometric};
 use crate::photometry::Photometry;
 use crate::scattering::ScatterTable;
 use crate::scene::steps::Steps;
@@ -84,7 +84,7 @@ impl Loader {
         }
         let name = self.path(file).display().to_string();
         let (folder, files, mut tilts) = (PathBuf::from(&file.value), &mut self.files, Vec::new());
-        let read = lm63::parse_with(&bytes, &name, &mut |tilt| {
+        let read = photometric::parse_with(&bytes, &name, &mut |tilt| {
             let name = folder.with_file_name(tilt).to_string_lossy().into_owned();
             let bytes = files.load(&name)?;
             tilts.push(name);
