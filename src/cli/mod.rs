@@ -205,9 +205,11 @@ fn algorithm(default: Algorithm, variant: Option<&String>, sequence: Option<&Str
     Ok(algorithm)
 }
 
-/// Writes a drawing of what a file holds where `--plot` asks for one; the ending of the name says as what.
-fn plot(path: Option<&PathBuf>, of: &Path, drawing: impl FnOnce() -> Drawing) -> Result<()> {
+/// Writes a drawing of what a file holds where an option asks for one; the ending of the name says as what.
+fn plot(path: Option<&PathBuf>, option: &str, of: &Path, drawing: impl FnOnce() -> Drawing) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
     check_outputs(std::slice::from_ref(path), &[of.to_path_buf()])?;
-    drawing().write(path).map_err(|e| if e.kind() == Kind::Range { in_option("--plot ", &e) } else { e })
+    let named =
+        |e: Diagnostic| if e.kind() == Kind::Range { in_option(&format!("{option} "), &e) } else { e };
+    drawing().write(path).map_err(named)
 }

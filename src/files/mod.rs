@@ -7,12 +7,17 @@ pub mod base64;
 pub mod bsdf;
 pub mod bytes;
 mod confine;
+pub mod converted;
+pub mod decimal;
 mod decode;
+#[path = "eulumdat/write.rs"]
+pub mod eulumdat_write;
 mod excerpt;
 pub mod exr;
 pub mod folder;
 pub mod height_image;
 pub(crate) mod kinds;
+pub mod letters;
 pub mod lm63;
 pub mod obj;
 mod obj_text;

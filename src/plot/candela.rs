@@ -36,7 +36,7 @@ pub fn drawing(photometry: &Photometry, summary: &Summary) -> Drawing {
         curves.truncate(1);
         curves[0].label = "all planes".into();
     }
-    PolarPlot { title: title(photometry), curves, footer: footer(summary) }.drawing()
+    PolarPlot { title: title_of(photometry), curves, footer: footer(summary) }.drawing()
 }
 
 /// Intensities at the table's own angles on both sides, and at whole degrees between.
@@ -45,7 +45,8 @@ fn section(at: impl Fn(f64) -> f64, table_deg: &[f64]) -> Vec<(f64, f64)> {
     curve_angles(180, 1, own).into_iter().map(|a| (a, at(a))).collect()
 }
 
-fn title(photometry: &Photometry) -> String {
+/// The headline: what the luminaire is called.
+pub fn title_of(photometry: &Photometry) -> String {
     let named =
         ["LUMINAIRE", "LUMCAT"].iter().filter_map(|k| photometry.label(k)).find(|t| !t.trim().is_empty());
     match named {
@@ -54,7 +55,8 @@ fn title(photometry: &Photometry) -> String {
     }
 }
 
-fn footer(s: &Summary) -> Vec<String> {
+/// Flux, maximum and angles, in lines.
+pub fn footer(s: &Summary) -> Vec<String> {
     let flux = format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela));
     let angle = |name: &str, degrees: Option<f64>| degrees.map(|d| format!("{name} {}\u{b0}", digits(d)));
     let angles = [angle("beam angle", s.beam_angle_deg), angle("field angle", s.field_angle_deg)];

@@ -19,5 +19,6 @@ pub mod maps;
 pub mod picture;
 mod polar;
 pub mod candela;
+pub mod isocandela;
 pub mod bsdf;
 pub mod compare;

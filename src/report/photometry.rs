@@ -1,15 +1,19 @@
 //! What `caustix photometry` says: what a lighting engineer wants to read about a file.
 
 use std::fmt::Write;
+use std::path::Path;
 
+use crate::files::decimal::DIGITS;
 use crate::files::lm63::generation_type;
+use crate::photometry::export::{Export, Written};
 use crate::photometry::{Format, Photometry, Revision, Summary, Tilt};
 
+use super::data_sheet;
 use super::numbers::printable;
 
 /// The report for a terminal: one quantity a line, names aligned, units behind the numbers. Without the warnings, which the
-/// command says on stderr.
-pub fn text(photometry: &Photometry, summary: &Summary) -> String {
+/// command says on stderr. `klm`: thousands of lumens for which the maximum is told, too.
+pub fn text(photometry: &Photometry, summary: &Summary, klm: Option<f64>) -> String {
     let mut out = String::new();
     let mut line = |name: &str, value: String| {
         let _infallible = writeln!(out, "{name:<20}{value}");
@@ -38,9 +42,21 @@ pub fn text(photometry: &Photometry, summary: &Summary) -> String {
     let at = summary.max_at;
     let place = format!("at V {} deg, H {} deg", at.vertical_deg, at.horizontal_deg);
     line("maximum", format!("{:>12.1} cd   {place}", summary.max_candela));
+    if let Some(klm) = klm {
+        let of = if photometry.lumens_per_lamp.is_some() { "the lamps" } else { "the luminaire" };
+        line(
+            "per 1000 lm",
+            format!("{:>12.1} cd/klm   for {:.1} lm of {of}", summary.max_candela / klm, 1e3 * klm),
+        );
+    }
     let planes = planes(summary);
     line("beam angle (50 %)", degrees([summary.beam_angle_deg, summary.beam_angle_across_deg], planes));
     line("field angle (10 %)", degrees([summary.field_angle_deg, summary.field_angle_across_deg], planes));
+    if let Some(through) = plane_of_max(summary).filter(|_| planes.len() > 1) {
+        let angle = |angle: Option<f64>| degrees([angle, None], &[&through]);
+        line("beam at maximum", angle(summary.sheet.beam_angle_at_max_deg));
+        line("field at maximum", angle(summary.sheet.field_angle_at_max_deg));
+    }
     line(
         "angles",
         format!("{} vertical x {} horizontal", summary.vertical_angles, summary.horizontal_angles),
@@ -58,7 +74,38 @@ pub fn text(photometry: &Photometry, summary: &Summary) -> String {
         }
         None => line("input power", "not stated".to_owned()),
     }
+    for line in data_sheet::lines(photometry, summary) {
+        out.push_str(&line);
+        out.push('\n');
+    }
     out
+}
+
+/// What is said of a luminaire that was written in another format.
+pub fn conversion(export: &Export, written: &Written, format: &str, path: &Path) -> String {
+    let mut out = String::new();
+    let mut line = |name: &str, value: String| {
+        let _infallible = writeln!(out, "{name:<20}{value}");
+    };
+    line("written", format!("{}, {format}", printable(&path.display().to_string())));
+    line("flux", lumens(export.flux_lm(), "trapezoid; factors are in the intensities"));
+    let (v, h) = (export.web().vertical_deg.len(), export.web().horizontal_deg.len());
+    line("angles", format!("{v} vertical x {h} horizontal, {}", export.web().symmetry().name()));
+    line("read back", format!("the same intensities, to {DIGITS} digits"));
+    for note in export.notes.iter().chain(&written.notes) {
+        line("note", printable(note));
+    }
+    out
+}
+
+/// The plane through the largest intensity, where it is none of the two that are told anyway.
+fn plane_of_max(summary: &Summary) -> Option<String> {
+    let (v, h) = (summary.max_at.vertical_deg, summary.max_at.horizontal_deg);
+    match summary.photometric_type {
+        "A" => (h != 0.0).then(|| format!("H = {h}")),
+        "B" => (v != 0.0).then(|| format!("V = {v}")),
+        _ => (h % 90.0 != 0.0 && v % 180.0 != 0.0).then(|| format!("C{h}-C{}", (h + 180.0) % 360.0)),
+    }
 }
 
 fn format_and_edition(photometry: &Photometry) -> String {
@@ -120,7 +167,7 @@ mod tests {
     fn the_report_names_quantities_and_units() {
         let file = "IESNA91\n[LUMINAIRE] a\x1b[31mb\n[MORE] c\nTILT=NONE\n1 -1 2 3 1 1 2 -0.1 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0 9\n";
         let photometry = photometric::parse(file.as_bytes(), "small.ies").unwrap();
-        let report = text(&photometry, &Summary::new(&photometry));
+        let report = text(&photometry, &Summary::new(&photometry), None);
         for line in [
             "luminaire           a [31mb c",
             "flux                       147.0 lm   value x multiplier, trapezoid",
@@ -129,6 +176,11 @@ mod tests {
             "beam angle (50 %)           40.0 deg  all planes",
             "luminous opening    disk, 0.100 x 0.100 x 0.000 m (width x length x height)",
             "input power                 10.0 W    6.6 lm/W",
+            // 2 pi x 100 cd x (1 - cos of 10, 40 degrees), of 147.0 lm.
+            "zonal lumens                84.2 lm     57.3 %     0-30 deg",
+            "                           147.0 lm    100.0 %     0-90 deg",
+            "in tens                      9.5 lm      6.5 %     0-10 deg",
+            "NEMA type                  5 x 5      C0-C180 x C90-C270",
         ] {
             assert!(report.lines().any(|l| l == line), "{line}\n{report}");
         }

@@ -20,6 +20,7 @@ mod doubts;
 mod header;
 mod tilt;
 mod tokens;
+pub mod write;
 
 pub use body::generation_type;
 
