@@ -126,7 +126,7 @@ fn is_read<T>(read: Result<T, Diagnostic>) -> bool {
 }
 
 fn photometry(bytes: &[u8], tilt: &[u8]) -> bool {
-    let read = photometric::parse_with(bytes, "lamp.ies", &mut |_| Ok(Rc::from(tilt)));
+    let read = photometric::parse_with(bytes, "lamp.ies", None, &mut |_| Ok(Rc::from(tilt)));
     if let Ok(photometry) = &read {
         photometry.warnings.iter().for_each(told);
         let summary = Summary::new(photometry);

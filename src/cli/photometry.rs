@@ -6,7 +6,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_bytes;
 use crate::files::converted::{Target, write_checked};
 use crate::files::outputs::check_outputs;
-use crate::files::photometric::read;
+use crate::files::photometric::read_with;
 use crate::photometry::export::Export;
 use crate::photometry::sheet::klm;
 use crate::photometry::{Photometry, Summary};
@@ -30,7 +30,7 @@ fn one(args: &PhotometryArgs) -> Done {
     let outputs: Vec<PathBuf> =
         [&args.plot, &args.iso, &args.output].into_iter().flatten().cloned().collect();
     check_outputs(&outputs, std::slice::from_ref(file))?;
-    let photometry = read(file)?;
+    let photometry = read_with(file, args.lamp_set)?;
     let summary = Summary::new(&photometry);
     let klm = if args.per_klm { Some(per_klm(&photometry, &summary)?) } else { None };
     plot(args.plot.as_ref(), "--plot", file, || candela::drawing(&photometry, &summary))?;
@@ -95,7 +95,7 @@ fn several(args: &PhotometryArgs, files: &[PathBuf]) -> Done {
     }
     let (mut summaries, mut failed) = (Vec::new(), false);
     for file in files {
-        match read(file) {
+        match read_with(file, args.lamp_set) {
             Ok(photometry) => {
                 if !args.json {
                     warn(&photometry.warnings);

@@ -1,7 +1,7 @@
 //! Luminaires to the bytes of a photometric file, which are read back before anybody is told that they are written.
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::eulumdat_write;
+use crate::files::eulumdat::write as eulumdat;
 use crate::files::lm63::write::{self, Edition};
 use crate::files::photometric::parse;
 use crate::photometry::Web;
@@ -47,7 +47,7 @@ pub fn write_checked(export: &Export, target: Target) -> Result<Written> {
     let written = match target {
         Target::Ies2002 => write::write(export, Edition::Y2002),
         Target::Ies2019 => write::write(export, Edition::Y2019),
-        Target::Ldt => eulumdat_write::write(export)?,
+        Target::Ldt => eulumdat::write(export)?,
     };
     read_back(&written, target)?;
     Ok(written)

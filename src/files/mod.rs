@@ -6,12 +6,12 @@ pub mod atomic;
 pub mod base64;
 pub mod bsdf;
 pub mod bytes;
+mod candela;
 mod confine;
 pub mod converted;
 pub mod decimal;
 mod decode;
-#[path = "eulumdat/write.rs"]
-pub mod eulumdat_write;
+pub mod eulumdat;
 mod excerpt;
 pub mod exr;
 pub mod folder;

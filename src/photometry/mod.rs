@@ -13,6 +13,7 @@ pub mod flux;
 pub mod luminance;
 pub mod nema;
 pub mod opening;
+mod opening_written;
 pub mod sheet;
 pub mod summary;
 pub mod turn;

@@ -1,6 +1,6 @@
-//! Luminous opening: the shape and size an LM-63 file gives to the part of a luminaire that shines.
+//! Luminous opening: the shape and size a file gives to the part of a luminaire that shines.
 //!
-//! A file writes width, length and height, and codes the shape in their signs: two codes, that of 1995 (a circle is
+//! EULUMDAT has a rectangle or a circle with heights. An LM-63 file writes width, length and height, and codes the shape in their signs: two codes, that of 1995 (a circle is
 //! one negative number) and that of 2002 (two). Both occur under every version line, so both are read everywhere;
 //! where they clash the revision decides. The tracer uses the size only as information: the photometric web is that
 //! of a point.
@@ -120,75 +120,21 @@ impl LuminousOpening {
         (Self { shape, size_m, heights_m: None }, defined)
     }
 
-    /// Width, length and height in metres with the signs of LM-63-2002 (and 2019): what [`Self::from_fields`] reads.
-    pub fn fields(&self) -> [f64; 3] {
+    /// The opening of EULUMDAT's luminous area: length (along C90-C270) or diameter, width (along C0-C180; 0 where it is
+    /// round), and the luminous heights towards C0, C90, C180 and C270, all in metres.
+    pub fn from_eulumdat([length, width]: [f64; 2], heights_m: [f64; 4]) -> Self {
         use OpeningShape::*;
-        let [w, l, h] = self.size_m;
-        match self.shape {
-            Point => [0.0; 3],
-            Rectangle | VerticalRectangle | Box | BoundingBox => [w, l, h],
-            Disk => [-w, -w, 0.0],
-            Ellipse => [-w, -l, 0.0],
-            VerticalCylinder => [-w, -w, h],
-            VerticalEllipticalCylinder => [-w, -l, h],
-            Sphere => [-w, -w, -w],
-            Ellipsoid => [-w, -l, -h],
-            HorizontalCylinderAlong => [-w, l, -h],
-            HorizontalCylinderAcross => [w, -l, -h],
-            VerticalDisk => [-w, 0.0, -h],
-        }
-    }
-
-    /// EULUMDAT's luminous area, length (across H = 0) and width (along it; 0 where it is round), and its heights towards C0, C90,
-    /// C180 and C270, m; and what it has no shape for.
-    pub fn eulumdat_sizes(&self) -> ([f64; 2], [f64; 4], Option<&'static str>) {
-        use OpeningShape::*;
-        let [w, l, h] = self.size_m;
-        let heights_m = self.heights_m.unwrap_or([h; 4]);
-        match self.shape {
-            Disk | VerticalCylinder => ([w, 0.0], heights_m, None),
-            Sphere => {
-                ([w, 0.0], heights_m, Some("EULUMDAT has no spheres: the opening is written as a cylinder"))
-            }
-            Point | Rectangle | Box => ([w, l], heights_m, None),
-            // A width of 0 would be a circle.
-            _ if w > 0.0 && l == 0.0 => {
-                let note = "EULUMDAT has no upright openings along C90: it is written 1 mm wide";
-                ([w, 1e-3], heights_m, Some(note))
-            }
-            VerticalRectangle | BoundingBox => ([w, l], heights_m, None),
-            _ => (
-                [w, l],
-                heights_m,
-                Some("EULUMDAT has rectangles and circles: the opening is written as its bounding box"),
-            ),
-        }
-    }
-
-    /// The opening turned about the axis with its table: what was towards H is towards H + `by_deg`. `None` where it has no shape
-    /// for that: what is not round turns by multiples of 90 degrees, an upright disk by 180.
-    pub fn turned(&self, by_deg: f64) -> Option<Self> {
-        use OpeningShape::*;
-        let is_even = self.heights_m.is_none_or(|heights| heights.iter().all(|&h| h == heights[0]));
-        if is_even && matches!(self.shape, Point | Disk | VerticalCylinder | Sphere) {
-            return Some(*self);
-        }
-        let quarters = by_deg.rem_euclid(360.0) / 90.0;
-        if quarters.fract() != 0.0 {
-            return None;
-        }
-        let quarters = quarters as usize;
-        let heights_m =
-            self.heights_m.map(|heights| std::array::from_fn(|i| heights[(i + 4 - quarters) % 4]));
-        let is_across = quarters % 2 == 1;
-        let shape = match self.shape {
-            VerticalDisk if is_across => return None,
-            HorizontalCylinderAlong if is_across => HorizontalCylinderAcross,
-            HorizontalCylinderAcross if is_across => HorizontalCylinderAlong,
-            shape => shape,
+        let height = heights_m.into_iter().fold(0.0, f64::max);
+        let (shape, across, along) = match [length, width, height].map(|x| x > 0.0) {
+            [false, false, false] => (Point, 0.0, 0.0),
+            [true, false, false] => (Disk, length, length),
+            [true, false, true] => (VerticalCylinder, length, length),
+            [true, true, false] => (Rectangle, length, width),
+            [true, true, true] => (Box, length, width),
+            [false, true, true] => (VerticalRectangle, length, width),
+            [false, ..] => (BoundingBox, length, width),
         };
-        let [w, l, h] = self.size_m;
-        Some(Self { shape, size_m: if is_across { [l, w, h] } else { [w, l, h] }, heights_m })
+        Self { shape, size_m: [across, along, height], heights_m: Some(heights_m) }
     }
 }
 
@@ -250,50 +196,27 @@ mod tests {
     }
 
     #[test]
+    fn eulumdat_has_length_across_and_width_along() {
+        let of = |area, heights| {
+            let opening = LuminousOpening::from_eulumdat(area, heights);
+            assert_eq!(opening.heights_m, Some(heights));
+            (opening.shape, opening.size_m)
+        };
+        let (flat, high) = ([0.0; 4], [0.1, 0.2, 0.1, 0.3]);
+        assert_eq!(of([0.0, 0.0], flat), (Point, [0.0; 3]));
+        assert_eq!(of([1.1, 0.2], flat), (Rectangle, [1.1, 0.2, 0.0]));
+        assert_eq!(of([1.1, 0.2], high), (Box, [1.1, 0.2, 0.3]));
+        assert_eq!(of([0.4, 0.0], flat), (Disk, [0.4, 0.4, 0.0]));
+        assert_eq!(of([0.4, 0.0], high), (VerticalCylinder, [0.4, 0.4, 0.3]));
+        assert_eq!(of([0.0, 0.4], high), (VerticalRectangle, [0.0, 0.4, 0.3]));
+        assert_eq!(of([0.0, 0.4], flat), (BoundingBox, [0.0, 0.4, 0.0]));
+    }
+
+    #[test]
     fn unknown_signs_are_a_box_and_feet_are_metres() {
         assert_eq!(shape([0.0, 0.0, -2.0], Revision::Y2002), (BoundingBox, [0.0, 0.0, 2.0], false));
         assert_eq!(shape([1.0, 1.0, -2.0], Revision::Y2002), (BoundingBox, [1.0, 1.0, 2.0], false));
         let (opening, _) = LuminousOpening::from_fields([1.0, 2.0, 0.0], true, Revision::Y2002);
         assert_eq!(opening.size_m, [0.3048, 0.6096, 0.0]);
-    }
-
-    #[test]
-    fn what_is_written_is_read_again() {
-        for (shape, size_m) in [
-            (Point, [0.0; 3]),
-            (Rectangle, [0.3, 1.2, 0.0]),
-            (VerticalRectangle, [0.3, 0.0, 0.1]),
-            (Box, [0.3, 1.2, 0.1]),
-            (Disk, [0.3, 0.3, 0.0]),
-            (Ellipse, [0.3, 1.2, 0.0]),
-            (VerticalCylinder, [0.3, 0.3, 0.1]),
-            (VerticalEllipticalCylinder, [0.3, 1.2, 0.1]),
-            (Sphere, [0.3, 0.3, 0.3]),
-            (Ellipsoid, [0.3, 1.2, 0.1]),
-            (HorizontalCylinderAlong, [0.3, 1.2, 0.3]),
-            (HorizontalCylinderAcross, [1.2, 0.3, 0.3]),
-            (VerticalDisk, [0.3, 0.0, 0.3]),
-        ] {
-            let opening = LuminousOpening { shape, size_m, heights_m: None };
-            assert_eq!(
-                LuminousOpening::from_fields(opening.fields(), false, Revision::Y2002),
-                (opening, true)
-            );
-            // Seen from where it was turned to, it is what it was.
-            for by_deg in [-90.0, 90.0, 180.0, 270.0] {
-                let Some(turned) = opening.turned(by_deg) else {
-                    assert_eq!((shape, by_deg % 180.0 == 0.0), (VerticalDisk, false));
-                    continue;
-                };
-                let (was, is) = (opening.projected_m2(70.0, 25.0), turned.projected_m2(70.0, 25.0 + by_deg));
-                assert!((was - is).abs() <= 1e-12, "{shape:?} {by_deg}: {was} {is}");
-            }
-            let is_round = matches!(shape, Point | Disk | VerticalCylinder | Sphere);
-            assert_eq!(opening.turned(45.0).is_some(), is_round, "{shape:?}");
-        }
-        let heights_m = Some([0.1, 0.2, 0.3, 0.4]);
-        let opening = LuminousOpening { shape: Box, size_m: [0.3, 1.2, 0.4], heights_m };
-        let turned = opening.turned(90.0).unwrap();
-        assert_eq!((turned.size_m, turned.heights_m), ([1.2, 0.3, 0.4], Some([0.4, 0.1, 0.2, 0.3])));
     }
 }

@@ -13,6 +13,9 @@ mod make_ies;
 
 mod broken_scene;
 mod damage;
+mod eulumdat_damaged;
+mod eulumdat_made;
+mod eulumdat_real;
 mod mistakes;
 mod mistakes_told;
 mod mistakes_warned;

@@ -10,7 +10,7 @@ use crate::support::data;
 use crate::support::random::Generator;
 
 /// Reads bytes and, if they are read, asks everything a program would ask; true if they were read.
-fn survives(bytes: &[u8]) -> bool {
+pub fn survives(bytes: &[u8]) -> bool {
     match photometric::parse(bytes, "damaged.ies") {
         Ok(photometry) => {
             let summary = Summary::new(&photometry);

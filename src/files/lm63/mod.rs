@@ -13,13 +13,13 @@
 //! V[nV]  H[nH]  candela[nH][nV]
 //! ```
 
-mod angles;
 mod body;
 mod commas;
 mod doubts;
 mod header;
 mod tilt;
 mod tokens;
+mod turned;
 pub mod write;
 
 pub use body::generation_type;

@@ -1,8 +1,9 @@
 //! What TILT= says: nothing, a table that follows, or the name of a file.
 
 use super::TiltFile;
-use super::body::{Reader, values};
+use super::body::Reader;
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::candela::number::values;
 use crate::files::decode::decode;
 use crate::files::excerpt::quoted;
 use crate::photometry::{Tilt, TiltTable};

@@ -84,7 +84,7 @@ impl Loader {
         }
         let name = self.path(file).display().to_string();
         let (folder, files, mut tilts) = (PathBuf::from(&file.value), &mut self.files, Vec::new());
-        let read = photometric::parse_with(&bytes, &name, &mut |tilt| {
+        let read = photometric::parse_with(&bytes, &name, None, &mut |tilt| {
             let name = folder.with_file_name(tilt).to_string_lossy().into_owned();
             let bytes = files.load(&name)?;
             tilts.push(name);
