@@ -89,7 +89,9 @@ pub use rooms::*;
 pub use error::warning::{Severity, Warning};
 pub use error::{Diagnostic, Invalid, Kind, Place, Result};
 // Photometric files:
+pub use files::converted::{ExportFormat, photometric_file};
 pub use files::photometric::{parse as parse_photometry, read as read_photometry};
+pub use photometry::export::{DataOrigin, Export, PhotometricFile};
 pub use photometry::{
     EulumdatHead, Format, LampSet, LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt, Web,
 };

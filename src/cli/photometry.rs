@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_bytes;
-use crate::files::converted::{Target, write_checked};
+use crate::files::converted::{ExportFormat, photometric_file};
 use crate::files::outputs::check_outputs;
 use crate::files::photometric::read_with;
 use crate::photometry::export::Export;
@@ -62,7 +62,7 @@ fn per_klm(photometry: &Photometry, summary: &Summary) -> Result<f64> {
 
 /// Writes the luminaire as `--to` says; what is to be said of it.
 fn convert(args: &PhotometryArgs, to: &str, photometry: &Photometry) -> Result<String> {
-    let target = Target::from_name(to).ok_or_else(|| {
+    let target = ExportFormat::from_name(to).ok_or_else(|| {
         let required = "one of: ies (LM-63-2002), ies2019, ldt (EULUMDAT)";
         Diagnostic::new(Kind::Unknown, format!("--to {to}"), required)
     })?;
@@ -80,7 +80,7 @@ fn convert(args: &PhotometryArgs, to: &str, photometry: &Photometry) -> Result<S
     if let Some(flux_lm) = args.flux {
         export.scale_to(flux_lm).map_err(|d| in_option("--flux ", &d))?;
     }
-    let written = write_checked(&export, target).map_err(|d| d.in_file(&photometry.file))?;
+    let written = photometric_file(&export, target).map_err(|d| d.in_file(&photometry.file))?;
     write_bytes(path, &written.bytes)?;
     Ok(conversion(&export, &written, target.name(), path))
 }

@@ -5,11 +5,14 @@ use crate::files::eulumdat::write as eulumdat;
 use crate::files::lm63::write::{self, Edition};
 use crate::files::photometric::parse;
 use crate::photometry::Web;
-use crate::photometry::export::{Export, Written};
+use crate::photometry::export::{Export, PhotometricFile};
+
+/// Half a unit of nine digits of 360 degrees, twice: mirrored angles are rounded apart from those that they mirror.
+const ANGLES_DEG: f64 = 1e-6;
 
 /// What can be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
+pub enum ExportFormat {
     /// IES LM-63-2002.
     Ies2002,
     /// IES LM-63-2019.
@@ -18,7 +21,7 @@ pub enum Target {
     Ldt,
 }
 
-impl Target {
+impl ExportFormat {
     /// By the name that `--to` takes.
     pub fn from_name(name: &str) -> Option<Self> {
         match name {
@@ -43,17 +46,17 @@ impl Target {
 ///
 /// # Errors
 /// Those of the writers; [`Kind::Range`] where what was written is read as something else, which is then not to be used.
-pub fn write_checked(export: &Export, target: Target) -> Result<Written> {
+pub fn photometric_file(export: &Export, target: ExportFormat) -> Result<PhotometricFile> {
     let written = match target {
-        Target::Ies2002 => write::write(export, Edition::Y2002),
-        Target::Ies2019 => write::write(export, Edition::Y2019),
-        Target::Ldt => eulumdat::write(export)?,
+        ExportFormat::Ies2002 => write::write(export, Edition::Y2002),
+        ExportFormat::Ies2019 => write::write(export, Edition::Y2019),
+        ExportFormat::Ldt => eulumdat::write(export)?,
     };
     read_back(&written, target)?;
     Ok(written)
 }
 
-fn read_back(written: &Written, target: Target) -> Result<()> {
+fn read_back(written: &PhotometricFile, target: ExportFormat) -> Result<()> {
     let other = |found: String| {
         let required = "the table that was to be written";
         Diagnostic::new(
@@ -92,8 +95,8 @@ mod tests {
         let web =
             Web::new(PhotometricType::C, vec![0.0, 30.0, 90.0], vec![0.0], vec![3.0, 2.0, 1.0]).unwrap();
         let export = Export::new("a", web).unwrap();
-        for target in [Target::Ies2002, Target::Ies2019] {
-            let written = write_checked(&export, target).unwrap();
+        for target in [ExportFormat::Ies2002, ExportFormat::Ies2019] {
+            let written = photometric_file(&export, target).unwrap();
             for (from, to) in
                 [("3 2 1", "3 2.1 1"), ("0 30 90", "0 31 90"), ("1 1.0", "2 1.0"), ("1 1 0", "1.1 1 0")]
             {
@@ -102,7 +105,10 @@ mod tests {
                     continue;
                 }
                 let bytes = text.replace(from, to).into_bytes();
-                assert!(read_back(&Written { bytes, ..written.clone() }, target).is_err(), "{from} {to}");
+                assert!(
+                    read_back(&PhotometricFile { bytes, ..written.clone() }, target).is_err(),
+                    "{from} {to}"
+                );
             }
         }
     }

@@ -18,7 +18,7 @@ pub struct Export {
     /// `MANUFAC`, `TEST`, `LUMINAIRE`, `LUMCAT` and `ISSUEDATE`. A date is the caller's: no writer looks at a clock.
     pub labels: Vec<(String, String)>,
     /// Where the numbers come from.
-    pub origin: Origin,
+    pub origin: DataOrigin,
     /// The table: type C, cd as emitted, every factor in it.
     web: Web,
     /// Number of lamps.
@@ -37,7 +37,7 @@ pub struct Export {
 
 /// Where the intensities of a file come from: the file generation type of LM-63-2019 (its section 5.13, Table 2).
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Origin {
+pub enum DataOrigin {
     /// A computer simulation: `1.00010`.
     Simulation,
     /// Not stated, or a file of an older edition: `1.00001`.
@@ -46,7 +46,7 @@ pub enum Origin {
     Code(String),
 }
 
-impl Origin {
+impl DataOrigin {
     /// The code of LM-63-2019.
     pub fn code(&self) -> &str {
         match self {
@@ -59,7 +59,7 @@ impl Origin {
 
 /// What a writer gives.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Written {
+pub struct PhotometricFile {
     /// The file.
     pub bytes: Vec<u8>,
     /// The table as the file has it, over H = 0..360: rounded to its digits.
@@ -82,7 +82,7 @@ impl Export {
         }
         Ok(Self {
             labels: vec![("LUMINAIRE".to_owned(), name.to_owned())],
-            origin: Origin::Undefined,
+            origin: DataOrigin::Undefined,
             web: Web::new(web.photometric_type, web.vertical_deg, web.horizontal_deg, web.candela)?,
             lamps: 1.0,
             lamps_lm: None,
@@ -100,10 +100,10 @@ impl Export {
     pub fn of(photometry: &Photometry) -> Result<Self> {
         let mut export = Self::new("", photometry.web.clone()).map_err(|d| d.in_file(&photometry.file))?;
         export.labels.clone_from(&photometry.labels);
-        let code = || Origin::Code(photometry.field12_text.clone());
+        let code = || DataOrigin::Code(photometry.field12_text.clone());
         export.origin = match photometry.format {
             Format::Lm63(Revision::Y2019) => code(),
-            _ => Origin::Undefined,
+            _ => DataOrigin::Undefined,
         };
         export.lamps = photometry.lamps;
         export.lamps_lm = photometry.lamps_lm();

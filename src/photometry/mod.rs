@@ -22,7 +22,6 @@ pub mod web;
 pub mod zones;
 
 pub use eulumdat::{EulumdatHead, LampSet};
-pub use export::Export;
 pub use opening::LuminousOpening;
 pub use sheet::DataSheet;
 pub use summary::Summary;

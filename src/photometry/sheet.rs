@@ -3,7 +3,7 @@
 use super::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_at_max_deg};
 use super::luminance::LuminanceTable;
 use super::nema::NemaType;
-use super::zones::{Lamps, ZonalLumens, flux_code};
+use super::zones::{LampFlux, ZonalLumens, flux_code};
 use super::{PhotometricType, Photometry};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -87,11 +87,11 @@ impl DataSheet {
     }
 }
 
-fn lamps(photometry: &Photometry) -> Lamps {
+fn lamps(photometry: &Photometry) -> LampFlux {
     match (photometry.lumens_per_lamp, photometry.lamps_lm()) {
-        (None, _) => Lamps::Absolute,
-        (_, Some(lm)) => Lamps::Lumens(lm),
-        (_, None) => Lamps::Unknown,
+        (None, _) => LampFlux::Absolute,
+        (_, Some(lm)) => LampFlux::Lumens(lm),
+        (_, None) => LampFlux::Unknown,
     }
 }
 
@@ -100,9 +100,9 @@ fn lamps(photometry: &Photometry) -> Lamps {
 pub fn klm(photometry: &Photometry, flux_lm: f64) -> Option<f64> {
     let of_set = photometry.lamp_sets.get(photometry.lamp_set).map(|set| set.flux_lm);
     let lm = match (of_set, lamps(photometry)) {
-        (Some(lm), _) | (None, Lamps::Lumens(lm)) => lm,
-        (None, Lamps::Absolute) => flux_lm,
-        (None, Lamps::Unknown) => 0.0,
+        (Some(lm), _) | (None, LampFlux::Lumens(lm)) => lm,
+        (None, LampFlux::Absolute) => flux_lm,
+        (None, LampFlux::Unknown) => 0.0,
     };
     (lm > 0.0).then(|| 1e-3 * lm)
 }

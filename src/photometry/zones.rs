@@ -67,7 +67,7 @@ fn between_lm(bands: &[Band], from_deg: f64, to_deg: f64) -> f64 {
 /// steradians around the downward axis (to 41.4, 60, 75.5 and 90 degrees), F the flux and L that of the lamps: F1/F4, F2/F4,
 /// F3/F4, F4/F, F/L. The first three are `None` where nothing goes down, the fourth in the dark, the last without a flux of
 /// lamps; absolute photometry has 100 there. `None` unless the table is of type C.
-pub fn flux_code(web: &Web, lamps_lm: Lamps) -> Option<[Option<f64>; 5]> {
+pub fn flux_code(web: &Web, lamps_lm: LampFlux) -> Option<[Option<f64>; 5]> {
     let bands = bands_of(web)?;
     let within = |quarter: f64| {
         // 60 and 90 degrees as a table has them.
@@ -81,9 +81,9 @@ pub fn flux_code(web: &Web, lamps_lm: Lamps) -> Option<[Option<f64>; 5]> {
     let (down, whole) = (within(4.0), between_lm(&bands, 0.0, 180.0));
     let percent = |part: f64, of: f64| (of > 0.0).then(|| 100.0 * part / of);
     let of_lamps = match lamps_lm {
-        Lamps::Absolute => (whole > 0.0).then_some(100.0),
-        Lamps::Lumens(lm) => percent(whole, lm),
-        Lamps::Unknown => None,
+        LampFlux::Absolute => (whole > 0.0).then_some(100.0),
+        LampFlux::Lumens(lm) => percent(whole, lm),
+        LampFlux::Unknown => None,
     };
     let [first, second, third] = [1.0, 2.0, 3.0].map(|quarter| percent(within(quarter), down));
     Some([first, second, third, percent(down, whole), of_lamps])
@@ -91,7 +91,7 @@ pub fn flux_code(web: &Web, lamps_lm: Lamps) -> Option<[Option<f64>; 5]> {
 
 /// What a light output ratio is of.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Lamps {
+pub enum LampFlux {
     /// Absolute photometry: the luminaire as a whole.
     Absolute,
     /// Lumens of all lamps.
@@ -123,7 +123,7 @@ mod tests {
         }
         near(zonal.halves_lm()[0], 100.0 * TAU);
         // Flux code of it: a quarter, a half, three quarters of the half space, half of the light below.
-        let code = flux_code(&even, Lamps::Lumens(800.0 * PI)).unwrap();
+        let code = flux_code(&even, LampFlux::Lumens(800.0 * PI)).unwrap();
         for (got, expected) in code.into_iter().zip([25.0, 50.0, 75.0, 50.0, 50.0]) {
             near(got.unwrap(), expected);
         }
@@ -149,16 +149,16 @@ mod tests {
         let v: Vec<f64> = (0..=900).map(|i| f64::from(i) * 0.1).collect();
         let cosine = v.iter().map(|v| v.to_radians().cos()).collect();
         let web = Web::new(C, v, vec![0.0], cosine).unwrap();
-        let code = flux_code(&web, Lamps::Absolute).unwrap();
+        let code = flux_code(&web, LampFlux::Absolute).unwrap();
         for (got, expected) in code.into_iter().zip([43.75, 75.0, 93.75, 100.0, 100.0]) {
             assert!((got.unwrap() - expected).abs() < 1e-4, "{got:?} {expected}");
         }
         let up = Web::new(C, vec![90.0, 180.0], vec![0.0], vec![1.0; 2]).unwrap();
-        assert_eq!(flux_code(&up, Lamps::Unknown), Some([None, None, None, Some(0.0), None]));
+        assert_eq!(flux_code(&up, LampFlux::Unknown), Some([None, None, None, Some(0.0), None]));
         let dark = Web::new(C, vec![0.0, 90.0], vec![0.0], vec![0.0; 2]).unwrap();
-        assert_eq!(flux_code(&dark, Lamps::Absolute), Some([None; 5]));
+        assert_eq!(flux_code(&dark, LampFlux::Absolute), Some([None; 5]));
         assert_eq!(ZonalLumens::new(&dark).unwrap().zones[0].percent, None);
         let flood = Web::new(B, vec![-90.0, 90.0], vec![-90.0, 90.0], vec![1.0; 4]).unwrap();
-        assert!(ZonalLumens::new(&flood).is_none() && flux_code(&flood, Lamps::Absolute).is_none());
+        assert!(ZonalLumens::new(&flood).is_none() && flux_code(&flood, LampFlux::Absolute).is_none());
     }
 }

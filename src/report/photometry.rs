@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::files::decimal::DIGITS;
 use crate::files::lm63::generation_type;
-use crate::photometry::export::{Export, Written};
+use crate::photometry::export::{Export, PhotometricFile};
 use crate::photometry::{Format, Photometry, Revision, Summary, Tilt};
 
 use super::data_sheet;
@@ -82,7 +82,7 @@ pub fn text(photometry: &Photometry, summary: &Summary, klm: Option<f64>) -> Str
 }
 
 /// What is said of a luminaire that was written in another format.
-pub fn conversion(export: &Export, written: &Written, format: &str, path: &Path) -> String {
+pub fn conversion(export: &Export, written: &PhotometricFile, format: &str, path: &Path) -> String {
     let mut out = String::new();
     let mut line = |name: &str, value: String| {
         let _infallible = writeln!(out, "{name:<20}{value}");

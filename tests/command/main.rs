@@ -13,6 +13,7 @@ mod interrupts;
 mod maps_open;
 mod misuse;
 mod outputs;
+mod photometry;
 mod picture;
 mod result_set;
 #[cfg(unix)]

@@ -184,7 +184,8 @@ fn requests_that_cannot_be_met_say_what_is_meant() {
         ("photometry lamp.ies --plot no/x.svg", 1, "found no folder `no`"),
         ("check plate.toml --photons 10", 2, "tip: `caustix render` has --photons"),
         ("render plate.toml --photons 1 000", 2, "tip: names and numbers with spaces stand in quotes"),
-        ("photometry lamp.ies table", 2, "tip: one file is read at a time"),
+        ("bsdf table lamp.ies", 2, "tip: one file is read at a time"),
+        ("photometry lamp.ies table", 1, "`caustix bsdf table`"),
         ("compare plate.toml --cells x", 2, "required: a whole number from 1 to 4096"),
         ("compare plate.toml --variants mc;qmc", 1, "variants are parted by commas"),
     ] {

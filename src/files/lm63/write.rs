@@ -2,7 +2,7 @@
 
 use crate::files::decimal::{rounded, rounded_table, text};
 use crate::files::letters::ascii;
-use crate::photometry::export::{Export, Written};
+use crate::photometry::export::{Export, PhotometricFile};
 use crate::photometry::web::Symmetry;
 use crate::photometry::{LuminousOpening, Web};
 
@@ -25,7 +25,7 @@ const LABEL_COLUMNS: usize = 254;
 const NUMBER_COLUMNS: usize = 130;
 
 /// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are written as 0.
-pub fn write(export: &Export, edition: Edition) -> Written {
+pub fn write(export: &Export, edition: Edition) -> PhotometricFile {
     let mut notes = Vec::new();
     let web = stored(export.web(), &mut notes);
     let (version, field12) = match edition {
@@ -44,7 +44,7 @@ pub fn write(export: &Export, edition: Edition) -> Written {
         lines.extend(wrapped(row));
     }
     let bytes = (lines.join("\r\n") + "\r\n").into_bytes();
-    Written { bytes, table: web.over_circle(), notes }
+    PhotometricFile { bytes, table: web.over_circle(), notes }
 }
 
 fn rows(web: &Web) -> impl Iterator<Item = &[f64]> {
@@ -168,7 +168,7 @@ fn wrapped(values: &[f64]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::files::photometric;
-    use crate::photometry::export::Origin;
+    use crate::photometry::export::DataOrigin;
     use crate::photometry::opening::OpeningShape;
     use crate::photometry::{Format, PhotometricType, Revision};
 
@@ -233,7 +233,7 @@ mod tests {
         (export.lamps, export.lamps_lm, export.input_watts) = (2.0, Some(1500.0), 12.5);
         export.opening =
             LuminousOpening { shape: OpeningShape::Disk, size_m: [0.1, 0.1, 0.0], heights_m: None };
-        export.origin = Origin::Simulation;
+        export.origin = DataOrigin::Simulation;
         let written = write(&export, Edition::Y2019);
         let expected = "IES:LM-63-2019\r\n[TEST] not stated\r\n[TESTLAB] not stated\r\n[ISSUEDATE] 2026-01-02\r\n\
             [MANUFAC] we\r\n[LUMINAIRE] Strasse\r\n[OTHER] a free line\r\nTILT=NONE\r\n\
