@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser};
 
+use crate::files::eulumdat::MAX_LAMP_SETS;
 use crate::run::MAX_REPLICATES;
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
@@ -57,8 +58,11 @@ pub struct RenderArgs {
 /// Arguments of `caustix photometry`.
 #[derive(Debug, Args)]
 pub struct PhotometryArgs {
-    /// Photometric file (IES LM-63).
+    /// Photometric file (IES LM-63, EULUMDAT).
     pub file: PathBuf,
+    /// Of the lamp sets of an EULUMDAT file the one of this number, from 1 [default: the first].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, { MAX_LAMP_SETS as u64 }>)]
+    pub lamp_set: Option<usize>,
     /// As JSON.
     #[arg(long)]
     pub json: bool,
@@ -83,8 +87,11 @@ pub struct BsdfArgs {
 /// Arguments of `caustix sample`.
 #[derive(Debug, Args)]
 pub struct SampleArgs {
-    /// Photometric file (IES LM-63).
+    /// Photometric file (IES LM-63, EULUMDAT).
     pub file: PathBuf,
+    /// Of the lamp sets of an EULUMDAT file the one of this number, from 1 [default: the first].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, { MAX_LAMP_SETS as u64 }>)]
+    pub lamp_set: Option<usize>,
     /// Directions to sample, like 1e6 or 2^20.
     #[arg(short = 'n', value_name = "N", allow_hyphen_values = true)]
     pub samples: String,

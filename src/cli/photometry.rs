@@ -10,7 +10,7 @@ use super::{Done, PhotometryArgs, exit, plot, print, warn};
 
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &PhotometryArgs) -> Done {
-    let photometry = photometric::read(&args.file)?;
+    let photometry = photometric::read_with(&args.file, args.lamp_set)?;
     let summary = Summary::new(&photometry);
     plot(args.plot.as_ref(), &args.file, || candela::drawing(&photometry, &summary))?;
     if args.json {
