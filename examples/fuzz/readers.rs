@@ -52,8 +52,15 @@ pub fn all(folder: &Path) -> Vec<Reader> {
     vec![
         of(
             "LM-63",
-            200,
+            120,
             corpus::lamps(),
+            A_TEXT,
+            Box::new(|bytes, _| photometry(&bytes, corpus::TILT.as_bytes())),
+        ),
+        of(
+            "EULUMDAT",
+            80,
+            corpus::eulumdats(),
             A_TEXT,
             Box::new(|bytes, _| photometry(&bytes, corpus::TILT.as_bytes())),
         ),
@@ -85,7 +92,13 @@ pub fn all(folder: &Path) -> Vec<Reader> {
             Box::new(|bytes, _| scene_text(&bytes)),
         ),
         of("scene, built", 20, vec![corpus::SCENE.into()], |_| 4096 * MIB, built(folder, "scene.toml")),
-        of("scene's lamp", 10, corpus::lamps(), |_| 1024 * MIB, built(folder, "lamp.ies")),
+        of(
+            "scene's lamp",
+            10,
+            [corpus::lamps(), corpus::eulumdats()].concat(),
+            |_| 1024 * MIB,
+            built(folder, "lamp.ies"),
+        ),
         of(
             "scene's table",
             10,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser};
 
+use crate::files::eulumdat::MAX_LAMP_SETS;
 use crate::run::MAX_REPLICATES;
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
@@ -60,6 +61,9 @@ pub struct PhotometryArgs {
     /// Photometric files (IES LM-63, EULUMDAT): one in full, several in a row each.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Of the lamp sets of an EULUMDAT file the one of this number, from 1 [default: the first].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, { MAX_LAMP_SETS as u64 }>)]
+    pub lamp_set: Option<usize>,
     /// As JSON; of several files an array.
     #[arg(long)]
     pub json: bool,
@@ -75,9 +79,6 @@ pub struct PhotometryArgs {
     /// Show and table intensities in candela per 1000 lm of the lamps, or of the luminaire in absolute photometry.
     #[arg(long)]
     pub per_klm: bool,
-    /// Lamp set of EULUMDAT to take, from 1.
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, 1000>)]
-    pub lamp_set: Option<usize>,
     /// Write the luminaire as another file: ies (LM-63-2002), ies2019 or ldt (EULUMDAT).
     #[arg(long, value_name = "FORMAT", requires = "output")]
     pub to: Option<String>,
@@ -108,8 +109,11 @@ pub struct BsdfArgs {
 /// Arguments of `caustix sample`.
 #[derive(Debug, Args)]
 pub struct SampleArgs {
-    /// Photometric file (IES LM-63).
+    /// Photometric file (IES LM-63, EULUMDAT).
     pub file: PathBuf,
+    /// Of the lamp sets of an EULUMDAT file the one of this number, from 1 [default: the first].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, { MAX_LAMP_SETS as u64 }>)]
+    pub lamp_set: Option<usize>,
     /// Directions to sample, like 1e6 or 2^20.
     #[arg(short = 'n', value_name = "N", allow_hyphen_values = true)]
     pub samples: String,

@@ -64,7 +64,7 @@ struct Command {
 enum Sub {
     /// Trace a scene and write its illuminance maps (without SCENE: the built-in scene).
     Render(RenderArgs),
-    /// Say what a photometric file (IES LM-63) holds: flux, maximum, angles, symmetry.
+    /// Say what a photometric file (IES LM-63, EULUMDAT) holds: flux, maximum, angles, symmetry.
     Photometry(PhotometryArgs),
     /// Check a scene: what can be known of it, and what a probe of a few thousand photons finds.
     Check(CheckArgs),

@@ -44,7 +44,7 @@ fn verdict(certificate: &Certificate) -> u8 {
 fn certify(args: &SampleArgs) -> Result<CertificateReport> {
     let number = parse_count(&args.samples).map_err(|e| in_option("-n ", &e))?;
     let algorithm = algorithm(Algorithm::default(), args.variant.as_ref(), args.sequence.as_ref())?;
-    let photometry = photometric::read(&args.file)?;
+    let photometry = photometric::read_with(&args.file, args.lamp_set)?;
     check_outputs(args.output.as_slice(), std::slice::from_ref(&args.file))?;
     if !args.json {
         warn(&photometry.warnings);

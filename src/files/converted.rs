@@ -68,10 +68,11 @@ fn read_back(written: &PhotometricFile, target: ExportFormat) -> Result<()> {
     };
     let read = parse(&written.bytes, target.name()).map_err(|d| other(format!("an error: {d}")))?;
     let (is, told) = (read.web.over_circle(), &written.table);
-    if read.factor() != 1.0
-        || is.vertical_deg != told.vertical_deg
-        || is.horizontal_deg != told.horizontal_deg
-    {
+    let same = |is: &[f64], told: &[f64]| {
+        is.len() == told.len() && is.iter().zip(told).all(|(a, b)| (a - b).abs() <= ANGLES_DEG)
+    };
+    let angles = same(&is.vertical_deg, &told.vertical_deg) && same(&is.horizontal_deg, &told.horizontal_deg);
+    if read.factor() != 1.0 || !angles {
         return Err(other("other angles".to_owned()));
     }
     match (0..is.candela.len()).find(|&i| (is.candela[i] - told.candela[i]).abs() > 1e-12 * told.candela[i]) {

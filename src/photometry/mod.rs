@@ -16,6 +16,7 @@ pub mod opening;
 mod opening_written;
 pub mod sheet;
 pub mod summary;
+pub mod tilt;
 pub mod turn;
 pub mod unfold;
 pub mod web;
@@ -25,10 +26,11 @@ pub use eulumdat::{EulumdatHead, LampSet};
 pub use opening::LuminousOpening;
 pub use sheet::DataSheet;
 pub use summary::Summary;
+pub use tilt::{Tilt, TiltTable};
 pub use unfold::FullGrid;
 pub use web::{PhotometricType, Web};
 
-use crate::error::Diagnostic;
+use crate::error::{Diagnostic, Invalid};
 
 /// The format of a photometric file, and its edition where it has editions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,34 +87,6 @@ impl Revision {
     }
 }
 
-/// How lamp output depends on the mounting tilt. It does not depend on the emission angle, so it is kept, shown
-/// and never multiplied into the intensities: they hold for the luminaire as it was measured.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Tilt {
-    /// `TILT=NONE`.
-    None,
-    /// `TILT=INCLUDE`: the table is in the file.
-    Include(TiltTable),
-    /// `TILT=name`: the table is in a file beside it; `None` when that file was not read.
-    File {
-        /// The name after `TILT=`.
-        name: String,
-        /// The table, if the file could be read.
-        table: Option<TiltTable>,
-    },
-}
-
-/// A tilt table: factors over the angle between the luminaire's axis and the vertical.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TiltTable {
-    /// Lamp-to-luminaire geometry: 1 vertical lamp, 2 horizontal and stays so, 3 horizontal and tilts.
-    pub geometry: u32,
-    /// Mounting angles, degrees.
-    pub angles_deg: Vec<f64>,
-    /// Factors at those angles.
-    pub factors: Vec<f64>,
-}
-
 /// A photometric file as it was read: plain data, lengths in metres, powers in watts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Photometry {
@@ -124,7 +98,7 @@ pub struct Photometry {
     /// to the keyword they continue, with a line feed. EULUMDAT's lines have the keywords of LM-63 that mean the same
     /// (docs/PHOTOMETRY.md); blank ones are left out.
     pub labels: Vec<(String, String)>,
-    /// Tilt of the lamp; never multiplied into the intensities.
+    /// How the output depends on the mounting tilt; none in EULUMDAT. Never multiplied into the intensities.
     pub tilt: Tilt,
     /// Number of lamps; of EULUMDAT in the lamp set taken, without its sign.
     pub lamps: f64,
@@ -161,8 +135,54 @@ pub struct Photometry {
 }
 
 impl Photometry {
-    /// Factor from [`Web::candela`] to what the luminaire emits: ballast factor, times field 12 in 1986 and 1991.
+    /// Factor from [`Web::candela`] to what the luminaire emits where it is not tilted: ballast factor, times field 12 in 1986 and
+    /// 1991, times the tilt table's factor at 0 degrees (1 where there is no table, or it does not reach 0).
     pub fn factor(&self) -> f64 {
+        self.gear_factor() * self.untilted_factor().unwrap_or(1.0)
+    }
+
+    /// The same where the luminaire is mounted at this tilt, degrees.
+    ///
+    /// # Errors
+    /// A file without a tilt table; a tilt outside it.
+    pub fn factor_at_tilt(&self, tilt_deg: f64) -> Result<f64, Invalid> {
+        let refused = |found: &str, required: String| Invalid::Content {
+            what: "tilt_deg",
+            found: format!("tilt_deg = {tilt_deg} {found}"),
+            required,
+        };
+        let Some(table) = self.tilt_table() else {
+            return Err(match &self.tilt {
+                Tilt::File { name, .. } => refused(
+                    &format!("for a file with TILT={name}, which was not read"),
+                    "that file beside the photometric file".to_owned(),
+                ),
+                _ => refused(
+                    "for a file without a tilt table",
+                    "no tilt_deg, unless the file has TILT=INCLUDE or TILT=file; `aim` turns the lamp"
+                        .to_owned(),
+                ),
+            });
+        };
+        let outside = || refused("outside the file's tilt table", format!("{} degrees", table.range()));
+        table.factor_at(tilt_deg).map(|factor| self.gear_factor() * factor).ok_or_else(outside)
+    }
+
+    /// The tilt table, if the file has one that was read.
+    pub fn tilt_table(&self) -> Option<&TiltTable> {
+        match &self.tilt {
+            Tilt::Include(table) | Tilt::File { table: Some(table), .. } => Some(table),
+            Tilt::None | Tilt::File { table: None, .. } => None,
+        }
+    }
+
+    /// The tilt table's factor at 0 degrees, if it reaches there.
+    pub fn untilted_factor(&self) -> Option<f64> {
+        self.tilt_table()?.factor_at(0.0)
+    }
+
+    /// Ballast factor, times field 12 in 1986 and 1991.
+    fn gear_factor(&self) -> f64 {
         match self.format {
             Format::Lm63(revision) if revision.field12_is_factor() => self.ballast_factor * self.field12,
             _ => self.ballast_factor,

@@ -19,7 +19,7 @@ pub struct Summary {
     pub photometric_type: &'static str,
     /// Flux by the industry's trapezoid (`flux::trapezoid_lm`), lm.
     pub flux_lm: f64,
-    /// `flux_lm` times ballast factor, and times field 12 in 1986 and 1991, lm.
+    /// `flux_lm` times ballast factor, field 12 in 1986 and 1991, and the tilt table's factor at 0 degrees, lm.
     pub flux_with_factors_lm: f64,
     /// The bilinear table integrated exactly, with those factors, lm: what a renderer emits.
     pub flux_emitted_lm: f64,
@@ -92,7 +92,7 @@ pub struct Label {
     pub text: String,
 }
 
-/// What a file says about lamp tilt. Never applied.
+/// What a file says about lamp tilt. Its factor at 0 degrees is in the fluxes with factors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TiltRecord {
     /// `none`, `include` or `file`.

@@ -29,7 +29,7 @@ pub fn text(photometry: &Photometry, summary: &Summary, klm: Option<f64>) -> Str
     line("flux with factors", lumens(summary.flux_with_factors_lm, &factors(photometry)));
     line("flux emitted", lumens(summary.flux_emitted_lm, &distance(summary)));
     if let Some(declared) = summary.flux_declared_lm {
-        line("flux declared", lumens(declared, "[_TOTALLUMINAIRELUMENS]"));
+        line("flux declared", lumens(declared, &declared_how(photometry)));
     }
     if let Some(lumens_per_lamp) = photometry.lumens_per_lamp {
         let lamps = format!("{} x {} lm", photometry.lamps, lumens_per_lamp);
@@ -38,6 +38,13 @@ pub fn text(photometry: &Photometry, summary: &Summary, klm: Option<f64>) -> Str
         line("lamps", lamps + &share.unwrap_or_default());
     } else {
         line("lamps", format!("{}, absolute photometry", photometry.lamps));
+    }
+    if let Some(set) = photometry.lamp_sets.get(photometry.lamp_set) {
+        let of = format!("{} of {}", photometry.lamp_set + 1, photometry.lamp_sets.len());
+        let texts = [("", &set.kind), ("colour ", &set.colour), ("CRI ", &set.cri)];
+        let texts = texts.iter().filter(|(_, text)| !text.is_empty());
+        let texts: String = texts.map(|(name, text)| format!(", {name}{}", printable(text))).collect();
+        line("lamp set", format!("{of}: {} lm{texts}", set.flux_lm));
     }
     let at = summary.max_at;
     let place = format!("at V {} deg, H {} deg", at.vertical_deg, at.horizontal_deg);
@@ -66,8 +73,9 @@ pub fn text(photometry: &Photometry, summary: &Summary, klm: Option<f64>) -> Str
     let size = format!("{width:.3} x {length:.3} x {height:.3} m (width x length x height)");
     line("luminous opening", format!("{}, {size}", summary.luminous_opening.shape));
     if photometry.tilt != Tilt::None {
-        line("tilt", "a table, not applied to the intensities".to_owned());
+        line("tilt", tilt(photometry));
     }
+    eulumdat(photometry, &mut line);
     match summary.efficacy_lm_w {
         Some(efficacy) => {
             line("input power", format!("{:>12.1} W    {efficacy:.1} lm/W", summary.input_watts))
@@ -119,13 +127,46 @@ fn format_and_edition(photometry: &Photometry) -> String {
 }
 
 fn factors(photometry: &Photometry) -> String {
-    match photometry.format {
+    let gear = match photometry.format {
         Format::Lm63(revision) if revision.field12_is_factor() => {
             format!("x ballast {} x ballast-lamp {}", photometry.ballast_factor, photometry.field12)
         }
         Format::Lm63(_) => format!("x ballast {}", photometry.ballast_factor),
         Format::Eulumdat => "EULUMDAT has none".to_owned(),
+    };
+    match photometry.untilted_factor() {
+        Some(factor) if factor != 1.0 => format!("{gear} x tilt {factor}"),
+        _ => gear,
     }
+}
+
+/// Where a declared flux comes from.
+fn declared_how(photometry: &Photometry) -> String {
+    match &photometry.eulumdat {
+        Some(head) => format!("lumens of the lamp set x LORL {} %", head.light_output_ratio_percent),
+        None => "[_TOTALLUMINAIRELUMENS]".to_owned(),
+    }
+}
+
+/// What the tilt table does.
+fn tilt(photometry: &Photometry) -> String {
+    let Some(table) = photometry.tilt_table() else {
+        return "a table that was not read: no factor".to_owned();
+    };
+    let (low, high) = table.factor_range();
+    let taken = photometry.untilted_factor().unwrap_or(1.0);
+    format!("factors {low} to {high} at {} deg; {taken} here, tilt_deg of an emitter chooses", table.range())
+}
+
+/// The lines that only EULUMDAT has.
+fn eulumdat(photometry: &Photometry, line: &mut impl FnMut(&str, String)) {
+    let Some(head) = &photometry.eulumdat else { return };
+    let [length, width, height] = head.luminaire_size_m;
+    line("luminaire size", format!("{length:.3} x {width:.3} x {height:.3} m (length x width x height)"));
+    line("Ityp, Isym", format!("{}, {}", head.ityp, head.isym));
+    line("conversion factor", head.conversion.to_string());
+    line("measured at a tilt", format!("of {} deg (shown only)", head.measured_tilt_deg));
+    line("downward declared", format!("{} % of the flux", head.downward_fraction_percent));
 }
 
 fn lumens(flux_lm: f64, how: &str) -> String {

@@ -10,6 +10,7 @@ mod check;
 mod contract;
 #[cfg(unix)]
 mod interrupts;
+mod lamp_set;
 mod maps_open;
 mod misuse;
 mod outputs;

@@ -33,6 +33,7 @@ mod scene_builder;
 mod scene_camera;
 mod scene_damaged;
 mod scene_errors;
+mod scene_lamps;
 mod scene_limits;
 mod scene_own;
 mod scene_shape_errors;

@@ -4,7 +4,7 @@ use caustix::files::photometric;
 use caustix::lab::certificate::sampler::{made_from, sample};
 use caustix::lab::certificate::{Certificate, Density, Draw, Judge, PointKind, REPLICATES, TestName};
 use caustix::math::solve::Solver;
-use caustix::photometry::Photometry;
+use caustix::photometry::{Format, Photometry};
 use caustix::run::{Algorithm, Variant};
 use caustix::sample::angles::Row;
 use caustix::sample::cell::Cell;
@@ -14,10 +14,11 @@ use caustix::sample::grid::Grid;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::{Points, Sequence, to_unit_f64};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::support::data;
 use crate::support::density::{Density as Reference, ends};
+use crate::support::ldt::{Ldt, NEITHER, TO_90, Table};
 use crate::support::sphere_table::SphereTable;
 
 fn grid_of(photometry: &Photometry) -> Grid {
@@ -109,6 +110,30 @@ fn own_files_pass() {
     for path in data::own_files() {
         for name in ["mc", "qmc-inverse-reuse"] {
             check_passes(&path, &Algorithm::parse(name).unwrap(), 2, 1 << 15);
+        }
+    }
+}
+
+/// EULUMDAT: half of the planes stored, from C270 on; and real files.
+#[test]
+fn eulumdat_files_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut files: Vec<PathBuf> = Vec::new();
+    for (name, isym, table) in [("isym3.ldt", 3, TO_90), ("isym0.ldt", 0, NEITHER)] {
+        let bell: Table = if isym == 3 { |gamma, c| TO_90(gamma, c) * (1.0 + gamma.cos()) } else { table };
+        files.push(folder.path().join(name));
+        std::fs::write(&files[files.len() - 1], Ldt::new(isym, bell).text()).unwrap();
+    }
+    let names = [
+        "copyleft/eurs__road_luminaire.ldt",
+        "copyleft/gldf__lampsets.ldt",
+        "permissive/pv-ldt__no_symmetry.ldt",
+    ];
+    files.extend(data::real_folder().into_iter().flat_map(|f| names.map(|name| f.join("ldt").join(name))));
+    for path in files {
+        assert_eq!(photometric::read(&path).unwrap().format, Format::Eulumdat);
+        for name in ["mc", "qmc-inverse-reuse"] {
+            check_passes(&path, &Algorithm::parse(name).unwrap(), 4, 1 << 15);
         }
     }
 }

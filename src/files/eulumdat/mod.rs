@@ -29,6 +29,7 @@ use crate::error::{Kind, Result};
 use crate::files::excerpt::quoted;
 use crate::photometry::{EulumdatHead, Format, Photometry, Tilt};
 use fields::Fields;
+pub use lamps::MAX_LAMP_SETS;
 pub(super) use lamps::told;
 
 /// Lumens for which a file states its intensities.
