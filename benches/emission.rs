@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
 use caustix::sample::angles::Row;
@@ -27,7 +27,7 @@ use glam::DVec3;
 const BATCH: u64 = 1 << 12;
 
 fn own(name: &str) -> Photometry {
-    lm63::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("ies").join(name)).unwrap()
+    photometric::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("ies").join(name)).unwrap()
 }
 
 /// The largest table of the wild: V by a quarter of a degree, H by one degree, every value another.

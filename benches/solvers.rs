@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::sequence::hash::mix64;
 use caustix::sequence::to_unit_f64;
 
@@ -119,7 +119,7 @@ fn main() {
     // Cargo passes --bench when it measures; a test run of all targets only wants to see that it works.
     let passes = if std::env::args().any(|a| a == "--bench") { PASSES } else { 1 };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("ies/wavy_glass.ies");
-    let table = of_table(&lm63::read(file).unwrap().web);
+    let table = of_table(&photometric::read(file).unwrap().web);
     let (methods, families) = (Method::all(), families());
     print_methods(&methods, &table, &families, passes);
     print_families(&methods, &families);

@@ -1,7 +1,7 @@
-//! caustix traces photons from luminaires through glass, water and mirrors. Photometric files (IES LM-63) and a scene in;
+//! caustix traces photons from luminaires through glass, water and mirrors. Photometric files (IES LM-63, EULUMDAT) and a scene in;
 //! illuminance maps in lux out, with the error of every number.
 //!
-//! # From an IES file to a number
+//! # From a photometric file to a number
 //!
 //! 1. [`read_photometry`] reads the file; [`Photometric`] is the emitter that it describes, put somewhere by an [`AimFrame`].
 //!    ([`Summary`] says what a data sheet would.)
@@ -89,8 +89,15 @@ pub use rooms::*;
 pub use error::warning::{Severity, Warning};
 pub use error::{Diagnostic, Invalid, Kind, Place, Result};
 // Photometric files:
-pub use files::lm63::{parse as parse_photometry, read as read_photometry};
-pub use photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt, Web};
+pub use files::converted::{ExportFormat, photometric_file};
+pub use files::photometric::{
+    parse as parse_photometry, read as read_photometry, read_with as read_photometry_with,
+};
+pub use photometry::export::{DataOrigin, Export, PhotometricFile};
+pub use photometry::{
+    EulumdatHead, Format, LampSet, LuminousOpening, PhotometricType, Photometry, Revision, Summary, Tilt,
+    TiltTable, Web,
+};
 // Scattering tables:
 pub use files::bsdf::{parse as parse_scattering, read as read_scattering};
 pub use scattering::{Frame, Lobe, LobeData, LobeSide, Quantity, ScatterTable};

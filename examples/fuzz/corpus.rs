@@ -23,6 +23,25 @@ pub fn lamps() -> Vec<Vec<u8>> {
     all
 }
 
+/// Every symmetry; several lamp sets, by set and by field; commas.
+pub fn eulumdats() -> Vec<Vec<u8>> {
+    let even = |step: usize, n: usize| (0..n).map(|i| format!("{}\r\n", step * i)).collect::<String>();
+    let file = |isym: usize, planes: usize, sets: &str| {
+        let head = format!("Nobody\r\n3\r\n{isym}\r\n8\r\n45\r\n7\r\n30\r\nr\r\nn\r\n1\r\nf\r\nd\r\n");
+        let sizes = "1200\r\n300\r\n60\r\n1100\r\n200\r\n0\r\n0\r\n5\r\n0\r\n50\r\n100\r\n1\r\n0\r\n";
+        let values: String = (0..7 * planes).map(|i| format!("{}.25\r\n", 60 + i % 7)).collect();
+        format!("{head}{sizes}{sets}{}{}{}{values}", "0.5\r\n".repeat(10), even(45, 8), even(30, 7))
+    };
+    let one = "1\r\n1\r\nLED\r\n1000\r\n4000\r\n80\r\n10\r\n";
+    let two = "2\r\n1\r\nA\r\n1000\r\n4000\r\n80\r\n10\r\n-1\r\nB\r\n2000\r\nnw\r\n>90\r\n20\r\n";
+    let by_field = "2\r\n1\r\n-1\r\nA\r\nB\r\n1000\r\n2000\r\n4000\r\nnw\r\n80\r\n>90\r\n10\r\n20\r\n";
+    let planes = [(0, 8), (1, 1), (2, 5), (3, 5), (4, 3)];
+    let mut all: Vec<String> = planes.map(|(isym, planes)| file(isym, planes, one)).into();
+    all.extend([two, by_field].map(|sets| file(1, 1, sets)));
+    all.push(file(3, 5, one).replace('.', ","));
+    all.into_iter().map(String::into_bytes).collect()
+}
+
 const TEXT: &str = "caustix-scattering 1\nname small\nframe specular\nsymmetry plane\nchannels 3\ntheta_i 0 45\npolar 0 10 30\n\
                     azimuth 0 90 180\nlobe reflection front\nincidence 0\n1 2 3\n4 5 6\n7 8 9\n1 2 3\n4 5 6\n7 8 9\n1 2 3\n4 5 6\n\
                     7 8 9\nincidence 45\n0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9\n1 1 1 1 1 1 1 1 1\n0 0 0 0 0 0 0 0 3e-3\n\

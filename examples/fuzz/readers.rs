@@ -12,7 +12,7 @@ use caustix::files::folder::Folder;
 use caustix::files::obj::{ObjOptions, parse_obj};
 use caustix::files::parts::{Found, Parts};
 use caustix::files::scene_toml::{self, SceneFile, count::parse_count};
-use caustix::files::{bsdf, height_image, lm63, photon_map};
+use caustix::files::{bsdf, height_image, photometric, photon_map};
 use caustix::photometry::Summary;
 use caustix::picture::check_saved;
 use caustix::scene::Scene;
@@ -52,8 +52,15 @@ pub fn all(folder: &Path) -> Vec<Reader> {
     vec![
         of(
             "LM-63",
-            200,
+            120,
             corpus::lamps(),
+            A_TEXT,
+            Box::new(|bytes, _| photometry(&bytes, corpus::TILT.as_bytes())),
+        ),
+        of(
+            "EULUMDAT",
+            80,
+            corpus::eulumdats(),
             A_TEXT,
             Box::new(|bytes, _| photometry(&bytes, corpus::TILT.as_bytes())),
         ),
@@ -85,7 +92,13 @@ pub fn all(folder: &Path) -> Vec<Reader> {
             Box::new(|bytes, _| scene_text(&bytes)),
         ),
         of("scene, built", 20, vec![corpus::SCENE.into()], |_| 4096 * MIB, built(folder, "scene.toml")),
-        of("scene's lamp", 10, corpus::lamps(), |_| 1024 * MIB, built(folder, "lamp.ies")),
+        of(
+            "scene's lamp",
+            10,
+            [corpus::lamps(), corpus::eulumdats()].concat(),
+            |_| 1024 * MIB,
+            built(folder, "lamp.ies"),
+        ),
         of(
             "scene's table",
             10,
@@ -126,7 +139,7 @@ fn is_read<T>(read: Result<T, Diagnostic>) -> bool {
 }
 
 fn photometry(bytes: &[u8], tilt: &[u8]) -> bool {
-    let read = lm63::parse_with(bytes, "lamp.ies", &mut |_| Ok(Rc::from(tilt)));
+    let read = photometric::parse_with(bytes, "lamp.ies", None, &mut |_| Ok(Rc::from(tilt)));
     if let Ok(photometry) = &read {
         photometry.warnings.iter().for_each(told);
         let summary = Summary::new(photometry);

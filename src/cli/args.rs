@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser};
 
+use crate::files::eulumdat::MAX_LAMP_SETS;
 use crate::run::MAX_REPLICATES;
 
 /// Most threads that can be asked for; starting more takes longer than tracing.
@@ -57,14 +58,39 @@ pub struct RenderArgs {
 /// Arguments of `caustix photometry`.
 #[derive(Debug, Args)]
 pub struct PhotometryArgs {
-    /// Photometric file (IES LM-63).
-    pub file: PathBuf,
-    /// As JSON.
+    /// Photometric files (IES LM-63, EULUMDAT): one in full, several in a row each.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Of the lamp sets of an EULUMDAT file the one of this number, from 1 [default: the first].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, { MAX_LAMP_SETS as u64 }>)]
+    pub lamp_set: Option<usize>,
+    /// As JSON; of several files an array.
     #[arg(long)]
     pub json: bool,
+    /// As CSV: the candela table of one file, a row each of several.
+    #[arg(long, conflicts_with = "json")]
+    pub csv: bool,
     /// Write a polar candela diagram (.svg or .png).
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
+    /// Write a diagram of lines of equal intensity (.svg or .png).
+    #[arg(long, value_name = "FILE")]
+    pub iso: Option<PathBuf>,
+    /// Show and table intensities in candela per 1000 lm of the lamps, or of the luminaire in absolute photometry.
+    #[arg(long)]
+    pub per_klm: bool,
+    /// Write the luminaire as another file: ies (LM-63-2002), ies2019 or ldt (EULUMDAT).
+    #[arg(long, value_name = "FORMAT", requires = "output")]
+    pub to: Option<String>,
+    /// The file that --to writes.
+    #[arg(short = 'o', long = "output", value_name = "FILE", requires = "to")]
+    pub output: Option<PathBuf>,
+    /// Scale what --to writes to this flux, lm (by the trapezoid of the lighting industry).
+    #[arg(long, value_name = "LM", allow_hyphen_values = true, requires = "to")]
+    pub flux: Option<f64>,
+    /// Turn what --to writes about its axis: what was at H comes to H + DEG.
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, requires = "to")]
+    pub turn: Option<f64>,
 }
 
 /// Arguments of `caustix bsdf`.
@@ -83,8 +109,11 @@ pub struct BsdfArgs {
 /// Arguments of `caustix sample`.
 #[derive(Debug, Args)]
 pub struct SampleArgs {
-    /// Photometric file (IES LM-63).
+    /// Photometric file (IES LM-63, EULUMDAT).
     pub file: PathBuf,
+    /// Of the lamp sets of an EULUMDAT file the one of this number, from 1 [default: the first].
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = whole::<usize, 1, { MAX_LAMP_SETS as u64 }>)]
+    pub lamp_set: Option<usize>,
     /// Directions to sample, like 1e6 or 2^20.
     #[arg(short = 'n', value_name = "N", allow_hyphen_values = true)]
     pub samples: String,

@@ -15,7 +15,7 @@ pub(super) fn run(args: &BsdfArgs) -> Done {
     let format = Format::of(&bytes, &name)?;
     let table = parse(&bytes, &name)?;
     let summary = BsdfSummary::new(&table, &name, format.name());
-    plot(args.plot.as_ref(), &args.file, || drawing(&table, &summary))?;
+    plot(args.plot.as_ref(), "--plot", &args.file, || drawing(&table, &summary))?;
     if args.json {
         print(&json(&summary)?);
     } else {

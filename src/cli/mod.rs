@@ -65,7 +65,7 @@ struct Command {
 enum Sub {
     /// Trace a scene and write its illuminance maps (without SCENE: the built-in scene).
     Render(RenderArgs),
-    /// Say what a photometric file (IES LM-63) holds: flux, maximum, angles, symmetry.
+    /// Say what a photometric file (IES LM-63, EULUMDAT) holds: flux, maximum, angles, symmetry.
     Photometry(PhotometryArgs),
     /// Check a scene: what can be known of it, and what a probe of a few thousand photons finds.
     Check(CheckArgs),
@@ -206,9 +206,11 @@ fn algorithm(default: Algorithm, variant: Option<&String>, sequence: Option<&Str
     Ok(algorithm)
 }
 
-/// Writes a drawing of what a file holds where `--plot` asks for one; the ending of the name says as what.
-fn plot(path: Option<&PathBuf>, of: &Path, drawing: impl FnOnce() -> Drawing) -> Result<()> {
+/// Writes a drawing of what a file holds where an option asks for one; the ending of the name says as what.
+fn plot(path: Option<&PathBuf>, option: &str, of: &Path, drawing: impl FnOnce() -> Drawing) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
     check_outputs(std::slice::from_ref(path), &[of.to_path_buf()])?;
-    drawing().write(path).map_err(|e| if e.kind() == Kind::Range { in_option("--plot ", &e) } else { e })
+    let named =
+        |e: Diagnostic| if e.kind() == Kind::Range { in_option(&format!("{option} "), &e) } else { e };
+    drawing().write(path).map_err(named)
 }

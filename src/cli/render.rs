@@ -105,8 +105,8 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let far_fields: Vec<_> =
         (0..scene.far_fields.len()).map(|i| FarFieldStatistics::new(&scene, &outcome, i)).collect();
     let fields = scene.far_fields.iter().zip(&far_fields);
-    let far_field_files: Vec<_> =
-        fields.map(|(field, s)| far_field::write(&mut set, &scene, &outcome, field, s)).collect();
+    let (far_field_files, of_far_fields): (Vec<_>, Vec<_>) =
+        fields.map(|(field, s)| far_field::write(&mut set, &scene, &outcome, field, s)).unzip();
     let mut camera = None;
     let mut unsaved = None;
     if let (Some(spec), Some(picture)) = (&scene.camera, &picture) {
@@ -120,7 +120,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     }
     let total_s = started.elapsed().as_secs_f64();
     let mut report = Report::new(&scene, &outcome, &statistics, &files, total_s);
-    report.add_far_fields(&scene, &far_fields, &far_field_files);
+    report.add_far_fields(&scene, &far_fields, &far_field_files, of_far_fields.concat());
     report.see(camera, picture.as_ref().map_or(Vec::new(), |picture| seen_wrong(&scene, picture.summary())));
     let mut written = set.finish(|files| vouching(&report, files));
     progress.clear();

@@ -9,8 +9,8 @@ use crate::emitter::AimFrame;
 use crate::emitter::photometric::grid_axes;
 use crate::error::Result;
 use crate::files::atomic::write_atomically;
-use crate::files::lm63;
 use crate::files::outputs::check_outputs;
+use crate::files::photometric;
 use crate::files::scene_toml::count::parse_count;
 use crate::lab::certificate::density::file_angles_deg;
 use crate::lab::certificate::sampler::{Effort, Sampled, made_from, sample};
@@ -44,7 +44,7 @@ fn verdict(certificate: &Certificate) -> u8 {
 fn certify(args: &SampleArgs) -> Result<CertificateReport> {
     let number = parse_count(&args.samples).map_err(|e| in_option("-n ", &e))?;
     let algorithm = algorithm(Algorithm::default(), args.variant.as_ref(), args.sequence.as_ref())?;
-    let photometry = lm63::read(&args.file)?;
+    let photometry = photometric::read_with(&args.file, args.lamp_set)?;
     check_outputs(args.output.as_slice(), std::slice::from_ref(&args.file))?;
     if !args.json {
         warn(&photometry.warnings);
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn a_certificate_that_fails_is_exit_1_and_told() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/ies/downlight.ies");
-        let photometry = lm63::read(file).unwrap();
+        let photometry = photometric::read(file).unwrap();
         let density = Density::new(&photometry.web).unwrap();
         let judged = |theta_rad: f64| {
             let mut judge = Judge::new(&density, PointKind::Random);

@@ -1,6 +1,6 @@
 //! A point emitter with a table of luminous intensity, sampled by inverse functions (METHOD 3).
 //!
-//! Scene text: `type = "photometric"`, `file`, `position`, `aim`, `up`, `flux_lm` (optional, rescales).
+//! Scene text: `type = "photometric"`, `file`, `position`, `aim`, `up`, `flux_lm` (optional, rescales), `tilt_deg`, `lamp_set`.
 //!
 //! Frame (docs/PHOTOMETRIC_FRAME.md): with the aim a, the up direction u made perpendicular to it and r = a x u, the
 //! direction of the angles (V, H) is
@@ -72,8 +72,8 @@ fn of_file(refused: impl Into<crate::error::Diagnostic>) -> Invalid {
 }
 
 impl Photometric {
-    /// The emitter of a photometric file at `position` (m). `flux_lm` rescales it; without, the file's candela stand, times
-    /// ballast factor and (1986, 1991) field 12.
+    /// The emitter of a photometric file at `position` (m). `flux_lm` is what it emits; without, the file's candela stand, times
+    /// [`Photometry::factor`].
     ///
     /// # Errors
     /// A table that emits nothing; a position or flux out of range or not a number.
@@ -83,9 +83,34 @@ impl Photometric {
         frame: AimFrame,
         flux_lm: Option<f64>,
     ) -> Result<Self, Invalid> {
+        Self::with_factor(photometry, photometry.factor(), position, frame, flux_lm)
+    }
+
+    /// The same, mounted at this tilt: with the factor of the file's tilt table there ([`Photometry::factor_at_tilt`]). `aim` turns
+    /// the lamp, the tilt does not. A `flux_lm` is what is emitted, whatever the tilt.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`]; a file without a tilt table, a tilt outside it.
+    pub fn at_tilt(
+        photometry: &Photometry,
+        tilt_deg: f64,
+        position: DVec3,
+        frame: AimFrame,
+        flux_lm: Option<f64>,
+    ) -> Result<Self, Invalid> {
+        Self::with_factor(photometry, photometry.factor_at_tilt(tilt_deg)?, position, frame, flux_lm)
+    }
+
+    fn with_factor(
+        photometry: &Photometry,
+        factor: f64,
+        position: DVec3,
+        frame: AimFrame,
+        flux_lm: Option<f64>,
+    ) -> Result<Self, Invalid> {
         let full = photometry.web.full_grid();
         let grid = Grid::new(&full.polar_rad, &full.azimuth_rad, &full.intensity_cd).map_err(of_file)?;
-        let file_flux_lm = grid.integral() * photometry.factor();
+        let file_flux_lm = grid.integral() * factor;
         let flux_lm = match flux_lm {
             Some(flux_lm) => FLUX.check("flux_lm", flux_lm)?,
             None => positive("flux_lm", file_flux_lm, "a file of positive flux")?,
@@ -115,8 +140,8 @@ impl Photometric {
         Ok(Self { uniform: Some(Arc::new(map)), ..self.clone() })
     }
 
-    /// The flux of the file as it stands, times ballast factor and (1986, 1991) field 12, lm: what the lamp emits where nothing
-    /// rescales it.
+    /// The flux of the file as it stands, times ballast factor, (1986, 1991) field 12 and tilt factor, lm: what the lamp emits
+    /// where nothing rescales it.
     pub fn file_flux_lm(&self) -> f64 {
         self.file_flux_lm
     }

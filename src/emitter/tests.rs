@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::error::Invalid;
-use crate::files::lm63;
+use crate::files::photometric;
 use crate::sample::coordinates::Purpose;
 use crate::sequence::owen::OwenPoints;
 
@@ -42,7 +42,7 @@ fn refused<T>(result: Result<T, Invalid>) -> &'static str {
 #[test]
 fn nonsense_is_refused_by_the_name_of_its_key() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/ies/spot.ies");
-    let photometry = lm63::read(file).unwrap();
+    let photometry = photometric::read(file).unwrap();
     let frame = AimFrame::new(DVec3::NEG_Z, None).unwrap();
     let panel = Panel::new([1.0; 2]).unwrap();
     let section = BeamSection::Disc { radius: 1.0 };

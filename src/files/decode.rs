@@ -58,7 +58,7 @@ fn utf8_or_1252(bytes: &[u8]) -> String {
     }
 }
 
-fn windows_1252(byte: u8) -> char {
+pub(super) fn windows_1252(byte: u8) -> char {
     /// 0x80..=0x9f; the five unassigned codes keep their number (WHATWG encoding standard).
     const HIGH: [char; 32] = [
         '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',

@@ -9,7 +9,7 @@ use crate::files::decode::{decode, is_utf16};
 pub(crate) enum Use {
     /// A scene.
     Scene,
-    /// A photometric file (IES LM-63).
+    /// A photometric file (IES LM-63, EULUMDAT).
     Photometric,
     /// A scattering table.
     Scattering,
@@ -66,7 +66,8 @@ const TO_OBJ: Use = Use::None("export the mesh as OBJ, or convert the file (Blen
 const BODIES: Use =
     Use::None("make a mesh of it and export that as OBJ (FreeCAD, or the program that wrote it)");
 const TO_PNG: Use = Use::None("convert the picture to a PNG of 8 or 16 bits (GIMP, ImageMagick)");
-const TO_IES: Use = Use::None("it is not read yet: convert the file to IES LM-63, or ask the maker for that");
+const TO_IES: Use =
+    Use::None("it is not read: convert the file to IES LM-63 or EULUMDAT, or ask the maker for one of them");
 const TO_TABLE: Use =
     Use::None("convert the table: docs/SCATTERING.md shows a text that a spreadsheet can write");
 const UNPACK: Use = Use::None("unpack it, and give the file that is in it");
@@ -165,16 +166,12 @@ fn of_text(text: &str) -> Option<(&'static str, Use)> {
     if trimmed.starts_with('<') {
         return Some(of_markup(trimmed));
     }
-    let starts = |line: &str, beginning: &str| {
-        line.trim_start().get(..beginning.len()).is_some_and(|head| head.eq_ignore_ascii_case(beginning))
-    };
-    // LM-63 has a line TILT=, and its newer editions say what they are.
-    let is_tilt = |line: &str| starts(line, "TILT") && line.trim_start()[4..].trim_start().starts_with('=');
-    if starts(trimmed, "IESNA") || starts(trimmed, "IES:LM-63") || text.lines().any(is_tilt) {
-        return Some(("an IES photometric file (LM-63)", Use::Photometric));
-    }
+    // The lines of EULUMDAT are looked at first: no label of LM-63 reads like all of them.
     if is_eulumdat(text) {
-        return Some(("an EULUMDAT file (.ldt)", TO_IES));
+        return Some(("an EULUMDAT file (.ldt)", Use::Photometric));
+    }
+    if is_lm63(text) {
+        return Some(("an IES photometric file (LM-63)", Use::Photometric));
     }
     if first.eq_ignore_ascii_case(SCATTERING) || ZEMAX.iter().any(|word| first.eq_ignore_ascii_case(word)) {
         return Some(("a scattering table", Use::Scattering));
@@ -227,19 +224,43 @@ fn of_markup(text: &str) -> (&'static str, Use) {
     }
 }
 
-/// Whether lines 2 to 7 are those of an EULUMDAT file: kind, symmetry, planes, their distance, angles and theirs.
-fn is_eulumdat(text: &str) -> bool {
-    let lines = text.split(if text.contains('\n') { '\n' } else { '\r' });
-    let numbers: Vec<f64> =
-        lines.skip(1).take(6).map_while(|line| line.trim().replace(',', ".").parse().ok()).collect();
+/// Whether it is LM-63, which has a line TILT=, and whose newer editions say what they are.
+pub(crate) fn is_lm63(text: &str) -> bool {
+    let starts = |line: &str, beginning: &str| {
+        line.trim_start().get(..beginning.len()).is_some_and(|head| head.eq_ignore_ascii_case(beginning))
+    };
+    let is_tilt = |line: &str| starts(line, "TILT") && line.trim_start()[4..].trim_start().starts_with('=');
+    let begins = text.trim_matches(|c: char| c.is_whitespace() || c == '\0' || c == '\u{feff}');
+    starts(begins, "IESNA") || starts(begins, "IES:LM-63") || text.split(['\n', '\r']).any(is_tilt)
+}
+
+/// Whether lines 2 to 7 are those of an EULUMDAT file: type, symmetry, planes, their distance, angles and theirs.
+pub(crate) fn is_eulumdat(text: &str) -> bool {
+    let numbers: Vec<f64> = lines_2_to_7(text).map_while(|number| number).collect();
     let [kind, symmetry, planes, between_planes, angles, between_angles] = numbers[..] else { return false };
     let is_whole = |x: f64, low: f64, high: f64| x.fract() == 0.0 && (low..=high).contains(&x);
     is_whole(kind, 0.0, 3.0)
         && is_whole(symmetry, 0.0, 4.0)
-        && is_whole(planes, 1.0, 1e4)
-        && is_whole(angles, 1.0, 1e4)
+        && is_whole(planes, 1.0, 1e5)
+        && is_whole(angles, 1.0, 1e5)
         && (0.0..=360.0).contains(&between_planes)
         && (0.0..=180.0).contains(&between_angles)
+}
+
+/// Whether it looks like a damaged EULUMDAT file: four of these lines have one number each. Its reader says what is wrong.
+pub(crate) fn is_nearly_eulumdat(text: &str) -> bool {
+    lines_2_to_7(text).flatten().count() >= 4
+}
+
+/// The numbers of lines 2 to 7, `None` where a line has none or several; text may stand behind one.
+fn lines_2_to_7(text: &str) -> impl Iterator<Item = Option<f64>> {
+    let lines = text.split(if text.contains('\n') { '\n' } else { '\r' });
+    let number = |word: &str| word.replace(',', ".").parse::<f64>().ok().filter(|x| x.is_finite());
+    lines.skip(1).take(6).map(move |line| {
+        let mut words = line.split(|c: char| c.is_whitespace() || c == '\0').filter(|word| !word.is_empty());
+        let first = words.next().and_then(number);
+        first.filter(|_| words.next().and_then(number).is_none())
+    })
 }
 
 /// Whether a text begins with lines of an OBJ file, a vertex among them.

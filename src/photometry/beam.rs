@@ -23,6 +23,20 @@ pub fn lobe_angle_across_deg(web: &Web, share: f64) -> Option<f64> {
     Profile::across(web).lobe_deg(share)
 }
 
+/// The same in the plane through the largest intensity ([`Web::max_intensity`]): its C and C + 180 (type C), its H (type
+/// A), its V (type B), which are planes through the luminaire in each type.
+pub fn lobe_angle_at_max_deg(web: &Web, share: f64) -> Option<f64> {
+    Profile::through_max(web).lobe_deg(share)
+}
+
+/// Full angles along H and along V through the largest intensity, type B: what floodlights are classed by.
+pub fn flood_angles_deg(web: &Web, share: f64) -> [Option<f64>; 2] {
+    let max = web.max_intensity();
+    let across = Profile::flat(&web.horizontal_deg, |h| web.intensity_cd(max.vertical_deg, h));
+    let upright = Profile::flat(&web.vertical_deg, |v| web.intensity_cd(v, max.horizontal_deg));
+    [across.lobe_deg(share), upright.lobe_deg(share)]
+}
+
 /// Intensities along one plane.
 struct Profile {
     angle_deg: Vec<f64>,
@@ -43,6 +57,15 @@ impl Profile {
         match web.photometric_type {
             PhotometricType::C => Self::through_axis(web, 90.0),
             _ => Self::flat(&web.vertical_deg, |v| web.intensity_cd(v, 0.0)),
+        }
+    }
+
+    fn through_max(web: &Web) -> Self {
+        let max = web.max_intensity();
+        match web.photometric_type {
+            PhotometricType::C => Self::through_axis(web, max.horizontal_deg),
+            PhotometricType::A => Self::flat(&web.vertical_deg, |v| web.intensity_cd(v, max.horizontal_deg)),
+            PhotometricType::B => Self::flat(&web.horizontal_deg, |h| web.intensity_cd(max.vertical_deg, h)),
         }
     }
 
@@ -155,5 +178,26 @@ mod tests {
                 .unwrap();
         assert_eq!(beam(&flood), Some(40.0));
         assert_eq!(lobe_angle_across_deg(&flood, BEAM_SHARE), Some(10.0));
+    }
+
+    #[test]
+    fn the_plane_through_the_maximum_holds_it() {
+        // 10 cd everywhere but a beam in C40: 100 cd at V = 30, 10 at 20 and 50: half at 24.44 and 41.11.
+        let mut candela = vec![10.0; 5 * 5];
+        candela[2 * 5 + 2] = 100.0;
+        let skew = web(&[0.0, 20.0, 30.0, 50.0, 90.0], &[0.0, 20.0, 40.0, 60.0, 360.0], &candela);
+        assert_eq!(lobe_angle_deg(&skew, BEAM_SHARE), Some(180.0));
+        let expected = 30.0 * (5.0 / 9.0);
+        let got = lobe_angle_at_max_deg(&skew, BEAM_SHARE).unwrap();
+        assert!((got - expected).abs() < 1e-12, "{got} {expected}");
+        // Maximum at V = 20, H = 10: 100 falling to 0 in 10 degrees of V and 30 of H.
+        let v = vec![10.0, 20.0, 30.0];
+        let flood =
+            Web::new(B, v, vec![-20.0, 10.0, 40.0], vec![0.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0]);
+        let flood = flood.unwrap();
+        assert_eq!(flood_angles_deg(&flood, BEAM_SHARE), [Some(30.0), Some(10.0)]);
+        assert_eq!(lobe_angle_at_max_deg(&flood, BEAM_SHARE), Some(30.0));
+        let lamp = Web { photometric_type: PhotometricType::A, ..flood };
+        assert_eq!(lobe_angle_at_max_deg(&lamp, BEAM_SHARE), Some(10.0));
     }
 }

@@ -18,6 +18,36 @@ pub fn trapezoid_lm(grid: &FullGrid) -> f64 {
     })
 }
 
+/// A band between two neighbouring polar angles as the trapezoid sees it: one mean intensity over its solid angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Its polar angles, rad.
+    pub polar_rad: [f64; 2],
+    /// Mean of its two rows, each integrated around the axis, cd rad.
+    pub around: f64,
+}
+
+impl Band {
+    /// Flux of its part between two polar angles, lm: mean intensity x exact solid angle. The parts of a band add up to it.
+    pub fn between_lm(&self, from_rad: f64, to_rad: f64) -> f64 {
+        let (low, high) = (from_rad.max(self.polar_rad[0]), to_rad.min(self.polar_rad[1]));
+        if low >= high {
+            return 0.0;
+        }
+        let (mid, half) = middle(low, high);
+        2.0 * self.around * libm::sin(mid) * libm::sin(half)
+    }
+}
+
+/// The bands of a grid: what [`trapezoid_lm`] adds up.
+pub fn bands(grid: &FullGrid) -> Vec<Band> {
+    let rows = rows(grid);
+    let bands = rows.windows(2).zip(grid.polar_rad.windows(2));
+    bands
+        .map(|(row, polar)| Band { polar_rad: [polar[0], polar[1]], around: 0.5 * (row[0] + row[1]) })
+        .collect()
+}
+
 /// The integral of the bilinear interpolant times sin(polar) over an unfolded grid, lm: closed form, to rounding.
 pub fn bilinear_lm(grid: &FullGrid) -> f64 {
     sum_bands(grid, node_weights)
@@ -57,14 +87,18 @@ fn sin_minus_x_cos(x: f64) -> f64 {
     sum
 }
 
-/// Sum over the cells of a grid; `weights(low, high)` are the polar weights of a band's two rows.
-fn sum_bands(grid: &FullGrid, weights: impl Fn(f64, f64) -> (f64, f64)) -> f64 {
-    let n = grid.azimuth_rad.len();
+/// The integral of each row around the axis, by the trapezoid, cd rad.
+fn rows(grid: &FullGrid) -> Vec<f64> {
     let along_azimuth = |row: &[f64]| -> f64 {
         let cells = row.windows(2).zip(grid.azimuth_rad.windows(2));
         cells.map(|(c, a)| 0.5 * (c[0] + c[1]) * (a[1] - a[0])).sum()
     };
-    let rows: Vec<f64> = grid.intensity_cd.chunks_exact(n.max(1)).map(along_azimuth).collect();
+    grid.intensity_cd.chunks_exact(grid.azimuth_rad.len().max(1)).map(along_azimuth).collect()
+}
+
+/// Sum over the cells of a grid; `weights(low, high)` are the polar weights of a band's two rows.
+fn sum_bands(grid: &FullGrid, weights: impl Fn(f64, f64) -> (f64, f64)) -> f64 {
+    let rows = rows(grid);
     let bands = rows.windows(2).zip(grid.polar_rad.windows(2));
     bands
         .map(|(row, polar)| {

@@ -1,6 +1,6 @@
-//! Luminous opening: the shape and size an LM-63 file gives to the part of a luminaire that shines.
+//! Luminous opening: the shape and size a file gives to the part of a luminaire that shines.
 //!
-//! A file writes width, length and height, and codes the shape in their signs: two codes, that of 1995 (a circle is
+//! EULUMDAT has a rectangle or a circle with heights. An LM-63 file writes width, length and height, and codes the shape in their signs: two codes, that of 1995 (a circle is
 //! one negative number) and that of 2002 (two). Both occur under every version line, so both are read everywhere;
 //! where they clash the revision decides. The tracer uses the size only as information: the photometric web is that
 //! of a point.
@@ -77,6 +77,8 @@ pub struct LuminousOpening {
     pub shape: OpeningShape,
     /// Extent of its bounding box in metres: width (across H = 0), length (along H = 0), height.
     pub size_m: [f64; 3],
+    /// EULUMDAT: luminous heights towards C0, C90, C180 and C270, m. `None` in LM-63, whose height is the same all round.
+    pub heights_m: Option<[f64; 4]>,
 }
 
 impl LuminousOpening {
@@ -115,7 +117,24 @@ impl LuminousOpening {
             ['+', '0', '-'] => (HorizontalCylinderAcross, [w, h, h], true),
             _ => (BoundingBox, [w, l, h], false),
         };
-        (Self { shape, size_m }, defined)
+        (Self { shape, size_m, heights_m: None }, defined)
+    }
+
+    /// The opening of EULUMDAT's luminous area: length (along C90-C270) or diameter, width (along C0-C180; 0 where it is
+    /// round), and the luminous heights towards C0, C90, C180 and C270, all in metres.
+    pub fn from_eulumdat([length, width]: [f64; 2], heights_m: [f64; 4]) -> Self {
+        use OpeningShape::*;
+        let height = heights_m.into_iter().fold(0.0, f64::max);
+        let (shape, across, along) = match [length, width, height].map(|x| x > 0.0) {
+            [false, false, false] => (Point, 0.0, 0.0),
+            [true, false, false] => (Disk, length, length),
+            [true, false, true] => (VerticalCylinder, length, length),
+            [true, true, false] => (Rectangle, length, width),
+            [true, true, true] => (Box, length, width),
+            [false, true, true] => (VerticalRectangle, length, width),
+            [false, ..] => (BoundingBox, length, width),
+        };
+        Self { shape, size_m: [across, along, height], heights_m: Some(heights_m) }
     }
 }
 
@@ -174,6 +193,23 @@ mod tests {
         ] {
             assert_eq!(shape(fields, revision), (expected, size, true), "{fields:?} {revision:?}");
         }
+    }
+
+    #[test]
+    fn eulumdat_has_length_across_and_width_along() {
+        let of = |area, heights| {
+            let opening = LuminousOpening::from_eulumdat(area, heights);
+            assert_eq!(opening.heights_m, Some(heights));
+            (opening.shape, opening.size_m)
+        };
+        let (flat, high) = ([0.0; 4], [0.1, 0.2, 0.1, 0.3]);
+        assert_eq!(of([0.0, 0.0], flat), (Point, [0.0; 3]));
+        assert_eq!(of([1.1, 0.2], flat), (Rectangle, [1.1, 0.2, 0.0]));
+        assert_eq!(of([1.1, 0.2], high), (Box, [1.1, 0.2, 0.3]));
+        assert_eq!(of([0.4, 0.0], flat), (Disk, [0.4, 0.4, 0.0]));
+        assert_eq!(of([0.4, 0.0], high), (VerticalCylinder, [0.4, 0.4, 0.3]));
+        assert_eq!(of([0.0, 0.4], high), (VerticalRectangle, [0.0, 0.4, 0.3]));
+        assert_eq!(of([0.0, 0.4], flat), (BoundingBox, [0.0, 0.4, 0.0]));
     }
 
     #[test]

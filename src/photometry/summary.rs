@@ -1,7 +1,7 @@
 //! What a lighting engineer asks of a photometric file, in one record.
 
 use super::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_across_deg, lobe_angle_deg};
-use super::{Photometry, Tilt, TiltTable, flux};
+use super::{DataSheet, EulumdatHead, LampSet, Photometry, Revision, Tilt, TiltTable, flux};
 use serde::Serialize;
 
 /// The record of `caustix photometry --json`.
@@ -11,21 +11,22 @@ use serde::Serialize;
 pub struct Summary {
     /// The file, as the caller named it.
     pub file: String,
-    /// `IES LM-63`.
+    /// `IES LM-63` or `EULUMDAT`.
     pub format: &'static str,
-    /// Year of the edition whose rules were applied; `1986` when the file has no version line.
-    pub revision: &'static str,
+    /// Year of the edition whose rules were applied; `1986` when the file has no version line, `None` for EULUMDAT.
+    pub revision: Option<&'static str>,
     /// `A`, `B` or `C`.
     pub photometric_type: &'static str,
     /// Flux by the industry's trapezoid (`flux::trapezoid_lm`), lm.
     pub flux_lm: f64,
-    /// `flux_lm` times ballast factor, and times field 12 in 1986 and 1991, lm.
+    /// `flux_lm` times ballast factor, field 12 in 1986 and 1991, and the tilt table's factor at 0 degrees, lm.
     pub flux_with_factors_lm: f64,
     /// The bilinear table integrated exactly, with those factors, lm: what a renderer emits.
     pub flux_emitted_lm: f64,
     /// `flux_emitted_lm / flux_with_factors_lm - 1`: how far the two integrals of one table are apart; `None` in the dark.
     pub flux_emitted_relative: Option<f64>,
-    /// `[_TOTALLUMINAIRELUMENS]`, lm; `None` also where it cannot be read, which `warnings` says.
+    /// `[_TOTALLUMINAIRELUMENS]`, or of EULUMDAT lumens of the lamp set x light output ratio, lm; `None` also where it cannot be
+    /// read, which `warnings` says.
     pub flux_declared_lm: Option<f64>,
     /// Number of lamps.
     pub lamps: f64,
@@ -35,6 +36,12 @@ pub struct Summary {
     pub lamps_lm: Option<f64>,
     /// `flux_lm / lamps_lm`.
     pub light_output_ratio: Option<f64>,
+    /// The lamp sets of EULUMDAT.
+    pub lamp_sets: Vec<LampSet>,
+    /// The one that was taken, from 1; `None` where there are none.
+    pub lamp_set: Option<usize>,
+    /// What only EULUMDAT says.
+    pub eulumdat: Option<EulumdatHead>,
     /// Candela multiplier, which is in all fluxes and intensities.
     pub multiplier: f64,
     /// Ballast factor.
@@ -67,6 +74,9 @@ pub struct Summary {
     pub input_watts: f64,
     /// `flux_with_factors_lm` per watt of input; `None` without a power.
     pub efficacy_lm_w: Option<f64>,
+    /// Zones, flux code, further angles, luminances.
+    #[serde(flatten)]
+    pub sheet: DataSheet,
     /// Labels in the order of the file.
     pub labels: Vec<Label>,
     /// What was tolerated.
@@ -82,7 +92,7 @@ pub struct Label {
     pub text: String,
 }
 
-/// What a file says about lamp tilt. Never applied.
+/// What a file says about lamp tilt. Its factor at 0 degrees is in the fluxes with factors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TiltRecord {
     /// `none`, `include` or `file`.
@@ -131,6 +141,8 @@ pub struct Opening {
     pub shape: &'static str,
     /// Width, length, height of the bounding box, m.
     pub size_m: [f64; 3],
+    /// EULUMDAT: luminous heights towards C0, C90, C180 and C270, m.
+    pub heights_m: Option<[f64; 4]>,
 }
 
 impl Summary {
@@ -146,8 +158,8 @@ impl Summary {
         let watts = photometry.input_watts;
         Self {
             file: photometry.file.clone(),
-            format: "IES LM-63",
-            revision: photometry.revision.name(),
+            format: photometry.format.name(),
+            revision: photometry.format.revision().map(Revision::name),
             photometric_type: web.photometric_type.name(),
             flux_lm,
             flux_with_factors_lm,
@@ -159,6 +171,9 @@ impl Summary {
             lumens_per_lamp: photometry.lumens_per_lamp,
             lamps_lm,
             light_output_ratio: lamps_lm.map(|lm| flux_lm / lm),
+            lamp_sets: photometry.lamp_sets.clone(),
+            lamp_set: (!photometry.lamp_sets.is_empty()).then_some(photometry.lamp_set + 1),
+            eulumdat: photometry.eulumdat,
             multiplier: photometry.multiplier,
             ballast_factor: photometry.ballast_factor,
             field12: photometry.field12_text.clone(),
@@ -171,6 +186,7 @@ impl Summary {
             luminous_opening: Opening {
                 shape: photometry.opening.shape.name(),
                 size_m: photometry.opening.size_m,
+                heights_m: photometry.opening.heights_m,
             },
             beam_angle_deg: lobe_angle_deg(web, BEAM_SHARE),
             field_angle_deg: lobe_angle_deg(web, FIELD_SHARE),
@@ -178,6 +194,7 @@ impl Summary {
             field_angle_across_deg: lobe_angle_across_deg(web, FIELD_SHARE),
             input_watts: watts,
             efficacy_lm_w: (watts > 0.0).then(|| flux_with_factors_lm / watts),
+            sheet: DataSheet::new(photometry, flux_lm),
             labels: photometry
                 .labels
                 .iter()
@@ -191,13 +208,13 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::lm63;
+    use crate::files::photometric;
 
     const SMALL: &str = "IESNA91\nTILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 0.9 10\n0 40 90\n0\n100 0 0\n";
 
     #[test]
     fn the_record_has_the_keys_of_the_interface_and_no_others() {
-        let summary = Summary::new(&lm63::parse(SMALL.as_bytes(), "small.ies").unwrap());
+        let summary = Summary::new(&photometric::parse(SMALL.as_bytes(), "small.ies").unwrap());
         let json = serde_json::to_value(&summary).unwrap();
         let mut keys: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
         keys.sort_unstable();
@@ -213,6 +230,9 @@ mod tests {
             "lamps",
             "lumens_per_lamp",
             "lamps_lm",
+            "lamp_sets",
+            "lamp_set",
+            "eulumdat",
             "light_output_ratio",
             "multiplier",
             "ballast_factor",
@@ -232,6 +252,17 @@ mod tests {
             "field_angle_deg",
             "input_watts",
             "efficacy_lm_w",
+            "flux_downward_lm",
+            "flux_upward_lm",
+            "downward_percent",
+            "zonal_lumens",
+            "cie_flux_code",
+            "beam_angle_at_max_deg",
+            "field_angle_at_max_deg",
+            "nema_type",
+            "max_candela_per_klm",
+            "luminance",
+            "absent",
             "warnings",
         ];
         expected.sort_unstable();
@@ -242,8 +273,44 @@ mod tests {
     }
 
     #[test]
+    fn what_is_not_given_says_why() {
+        let of = |text: &str| {
+            serde_json::to_value(Summary::new(&photometric::parse(text.as_bytes(), "x.ies").unwrap()))
+                .unwrap()
+        };
+        let cone = of(SMALL);
+        let keys = |json: &serde_json::Value| {
+            json["absent"].as_object().unwrap().keys().cloned().collect::<Vec<_>>()
+        };
+        assert_eq!(keys(&cone), ["luminance"]);
+        // 200 cd of a cone of 147.01 lm, absolute: 1360.45 cd/klm; 72 degrees of field are type 5; all of it goes down.
+        assert!(
+            (cone["max_candela_per_klm"].as_f64().unwrap() - 2e5 / cone["flux_lm"].as_f64().unwrap()).abs()
+                < 1e-9
+        );
+        assert_eq!(cone["nema_type"]["types"], serde_json::json!([5, 5]));
+        assert_eq!(cone["downward_percent"], 100.0);
+        assert_eq!(cone["flux_downward_lm"], cone["flux_lm"]);
+        let flood = of("IESNA:LM-63-2002\nTILT=NONE\n1 0 1 2 2 2 2 1 1 0\n1 1 0\n-90 90\n-90 90\n0 0 0 0\n");
+        let dark = [
+            "beam_angle_at_max_deg",
+            "cie_flux_code",
+            "downward_percent",
+            "field_angle_at_max_deg",
+            "flux_downward_lm",
+            "flux_upward_lm",
+            "luminance",
+            "max_candela_per_klm",
+            "nema_type",
+            "zonal_lumens",
+        ];
+        assert_eq!(keys(&flood), dark);
+        assert!(dark.iter().all(|key| flood[key].is_null()), "{flood}");
+    }
+
+    #[test]
     fn fluxes_count_what_their_names_say() {
-        let summary = Summary::new(&lm63::parse(SMALL.as_bytes(), "small.ies").unwrap());
+        let summary = Summary::new(&photometric::parse(SMALL.as_bytes(), "small.ies").unwrap());
         // A cone of 200 cd falling linearly to 0 at 40 degrees. Trapezoid: 2 pi 100 (1 - cos 40); exact:
         // 2 pi 200 Int (1 - t/T) sin t dt = 2 pi 200 (1 - sin T / T).
         let edge = 40f64.to_radians();

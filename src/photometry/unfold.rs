@@ -64,8 +64,27 @@ impl Web {
     }
 }
 
+impl Web {
+    /// A table of type C with its planes over 0..360, both ends present; other types as they are.
+    pub fn over_circle(&self) -> Self {
+        if self.photometric_type != PhotometricType::C {
+            return self.clone();
+        }
+        let planes = unfold(self.horizontal_fold(), &self.horizontal_deg);
+        let rows = 0..self.vertical_deg.len();
+        let row =
+            |plane: &Node| rows.clone().map(|v| self.blended(Between::node(v), plane.at)).collect::<Vec<_>>();
+        Self {
+            photometric_type: self.photometric_type,
+            vertical_deg: self.vertical_deg.clone(),
+            horizontal_deg: planes.iter().map(|plane| plane.angle_deg).collect(),
+            candela: planes.iter().flat_map(row).collect(),
+        }
+    }
+}
+
 /// Radians, the half and the full turn exact.
-fn radians(degrees: f64) -> f64 {
+pub(super) fn radians(degrees: f64) -> f64 {
     match degrees {
         180.0 => PI,
         360.0 => TAU,
@@ -196,6 +215,9 @@ mod tests {
             }
             if t == C {
                 assert_eq!((grid.azimuth_rad[0], *grid.azimuth_rad.last().unwrap()), (0.0, TAU));
+            }
+            if t == C {
+                assert_eq!(web.over_circle().full_grid(), grid, "{v:?} {h:?}");
             }
             let (mut inside, mut outside) = (0, 0);
             for _ in 0..4000 {

@@ -12,7 +12,7 @@ use super::polar::{Curve, PolarPlot};
 /// horizontal one (V = 0), with the aim at the bottom. One curve where both planes are the same.
 pub fn drawing(photometry: &Photometry, summary: &Summary) -> Drawing {
     let curves = curves(&photometry.web);
-    PolarPlot { title: title(photometry), curves, footer: footer(summary) }.drawing()
+    PolarPlot { title: title_of(photometry), curves, footer: footer(summary) }.drawing()
 }
 
 /// The curves of a table.
@@ -50,7 +50,8 @@ fn section(at: impl Fn(f64) -> f64, table_deg: &[f64]) -> Vec<(f64, f64)> {
     curve_angles(180, 1, own).into_iter().map(|a| (a, at(a))).collect()
 }
 
-fn title(photometry: &Photometry) -> String {
+/// The headline: what the luminaire is called.
+pub fn title_of(photometry: &Photometry) -> String {
     let named =
         ["LUMINAIRE", "LUMCAT"].iter().filter_map(|k| photometry.label(k)).find(|t| !t.trim().is_empty());
     match named {
@@ -59,7 +60,8 @@ fn title(photometry: &Photometry) -> String {
     }
 }
 
-fn footer(s: &Summary) -> Vec<String> {
+/// Flux, maximum and angles, in lines.
+pub fn footer(s: &Summary) -> Vec<String> {
     let flux = format!("flux {} lm, maximum {} cd", digits(s.flux_lm), digits(s.max_candela));
     let angle = |name: &str, degrees: Option<f64>| degrees.map(|d| format!("{name} {}\u{b0}", digits(d)));
     let angles = [angle("beam angle", s.beam_angle_deg), angle("field angle", s.field_angle_deg)];

@@ -152,6 +152,45 @@ impl Canvas {
         }
     }
 
+    /// Fills the area within closed loops, even-odd: 8 rows a pixel, exact along them.
+    pub fn region(&mut self, loops: &[Vec<[f64; 2]>], colour: Colour) {
+        const ROWS: usize = 8;
+        let is_finite = |chain: &&Vec<[f64; 2]>| chain.iter().flatten().all(|c| c.is_finite());
+        let edges: Vec<([f64; 2], [f64; 2])> = loops
+            .iter()
+            .filter(is_finite)
+            .flat_map(|chain| chain.iter().copied().zip(chain.iter().copied().cycle().skip(1)))
+            .collect();
+        let clip = self.clip;
+        // The edges that each row of pixels meets.
+        let mut of_row: Vec<Vec<usize>> = vec![Vec::new(); self.height];
+        for (i, (a, b)) in edges.iter().enumerate() {
+            pixels(a[1].min(b[1]), a[1].max(b[1]), clip[1], clip[3]).for_each(|y| of_row[y].push(i));
+        }
+        let mut shares = vec![0.0; self.width];
+        for (y, met) in of_row.iter().enumerate().filter(|(_, met)| !met.is_empty()) {
+            for row in 0..ROWS {
+                let at = y as f64 + (row as f64 + 0.5) / ROWS as f64;
+                let crossing = |&i: &usize| {
+                    let (a, b) = edges[i];
+                    let crosses = (a[1] > at) != (b[1] > at);
+                    crosses.then(|| a[0] + (at - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+                };
+                let mut crossed: Vec<f64> = met.iter().filter_map(crossing).collect();
+                crossed.sort_unstable_by(f64::total_cmp);
+                for span in crossed.chunks_exact(2) {
+                    for (x, share) in covered(span[0], span[1], clip[0], clip[2]) {
+                        shares[x] += share / ROWS as f64;
+                    }
+                }
+            }
+            for (x, share) in shares.iter_mut().enumerate().filter(|(_, share)| **share > 0.0) {
+                self.blend(y * self.width + x, colour, *share as f32);
+                *share = 0.0;
+            }
+        }
+    }
+
     /// A straight line of this width with round ends.
     pub fn line(&mut self, from: [f64; 2], to: [f64; 2], width_px: f64, colour: Colour) {
         self.polyline(&[from, to], width_px, colour, 1.0);

@@ -78,6 +78,13 @@ pub enum Shape {
         /// Its colour.
         colour: Colour,
     },
+    /// The area within closed loops, even-odd.
+    Region {
+        /// The loops.
+        loops: Vec<Vec<[f64; 2]>>,
+        /// Its colour.
+        colour: Colour,
+    },
     /// Upright text.
     Text {
         /// Where its anchor is, on the baseline.
@@ -112,6 +119,7 @@ impl Drawing {
                 }
                 Shape::Rect { area, colour } => canvas.rect(*area, *colour),
                 Shape::Polygon { corners, colour } => canvas.polygon(corners, *colour),
+                Shape::Region { loops, colour } => canvas.region(loops, *colour),
                 Shape::Text { at, text, style } => canvas.text(*at, text, style),
             }
         }
@@ -175,6 +183,10 @@ fn svg_of(shape: &Shape) -> String {
         Shape::Polygon { corners, colour } => {
             let (points, fill) = (list(corners), hex(*colour));
             format!("<polygon points=\"{points}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>")
+        }
+        Shape::Region { loops, colour } => {
+            let path: Vec<String> = loops.iter().map(|chain| format!("M {} Z", list(chain))).collect();
+            format!("<path d=\"{}\" fill=\"{}\" fill-rule=\"evenodd\"/>", path.join(" "), hex(*colour))
         }
         Shape::Text { at, text, style } => {
             let anchor = match style.anchor {

@@ -20,5 +20,6 @@ pub mod picture;
 mod polar;
 pub mod candela;
 pub mod far_field;
+pub mod isocandela;
 pub mod bsdf;
 pub mod compare;

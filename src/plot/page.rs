@@ -63,6 +63,11 @@ pub fn finished(
     if entries > 0 {
         y += LINE_HEIGHT + 4.0;
     }
+    base_drawing(shapes, y, footer)
+}
+
+/// The page with lines of text from `y` on.
+pub fn base_drawing(mut shapes: Vec<Shape>, mut y: f64, footer: &[String]) -> Drawing {
     for line in footer {
         shapes.push(text([MARGIN, y], line, TextStyle::new(fitting(line, TEXT_SIZE), ink())));
         y += LINE_HEIGHT;

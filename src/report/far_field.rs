@@ -12,6 +12,7 @@ use crate::estimate::far_field::{Table, jackknife_error};
 use crate::files::atomic::write_atomically;
 use crate::files::exr::{Channel, Light, Value, floats, write_maps};
 use crate::photometry::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_across_deg, lobe_angle_deg};
+use crate::photometry::export::{DataOrigin, Export};
 use crate::photometry::{PhotometricType, Web};
 use crate::run::Outcome;
 use crate::scene::Scene;
@@ -175,7 +176,9 @@ impl FarFieldStatistics {
             ));
         }
         if seen_lm == 0.0 {
-            let message = "no light arrives in it, so that its files hold zeros".to_owned();
+            let message =
+                "no light arrives in it, so that its files hold zeros and there is no EULUMDAT of it"
+                    .to_owned();
             all.push(tell(
                 "far-field-dark",
                 message,
@@ -294,6 +297,28 @@ fn web(table: &Table, candela: &[f64], symmetry: Symmetry) -> Web {
         horizontal_deg,
         candela: kept.into_iter().flat_map(of_plane).collect(),
     }
+}
+
+/// The table as a luminaire's photometric file: absolute photometry from a simulation, with what it is worth in its labels.
+///
+/// # Errors
+/// None for a table of a run, which a file can hold.
+pub fn export(scene: &Scene, outcome: &Outcome, field: &FarField, s: &FarFieldStatistics) -> Result<Export> {
+    let mut export = Export::new(&field.name, s.web.clone())?;
+    export.origin = DataOrigin::Simulation;
+    let mut label = |keyword: &str, text: String| export.labels.push((keyword.into(), text));
+    label("TEST", format!("simulated by caustix {}", env!("CARGO_PKG_VERSION")));
+    label("TESTLAB", "none: a simulation".into());
+    label(
+        "_PHOTONS",
+        format!("{} in {} replicates, seed {}", outcome.photons, outcome.replicates, outcome.plan.seed()),
+    );
+    if let Some(error) = s.max_candela.standard_error.filter(|_| s.max_candela.value > 0.0) {
+        let part = rounded(100.0 * error / s.max_candela.value, 2);
+        label("_STANDARD_ERROR", format!("{part} % of the maximum, there; the CSV has that of every node"));
+    }
+    label("_SCENE_SHA256", scene.identity.sha256.clone());
+    Ok(export)
 }
 
 /// Writes the table as CSV: a row a node, plane by plane.

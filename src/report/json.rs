@@ -339,12 +339,13 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Adds the scene's far fields and what they say of themselves. `files` names what was written for each.
+    /// Adds the scene's far fields and what they and their files say of themselves. `files` names what was written for each.
     pub fn add_far_fields(
         &mut self,
         scene: &'a Scene,
         numbers: &'a [FarFieldStatistics],
         files: &'a [Vec<String>],
+        of_files: Vec<Warning>,
     ) {
         let all = || scene.far_fields.iter().zip(numbers);
         let report = |((field, numbers), files): ((&'a FarField, _), &'a Vec<String>)| FarFieldReport {
@@ -353,7 +354,7 @@ impl<'a> Report<'a> {
             files,
         };
         self.far_fields = all().zip(files).map(report).collect();
-        self.tell(all().flat_map(|(field, numbers)| numbers.warnings(field)).collect());
+        self.tell(all().flat_map(|(field, numbers)| numbers.warnings(field)).chain(of_files).collect());
     }
 
     /// Adds the camera and what its picture says of itself.

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use caustix::emitter::{AimFrame, Emitter, Photometric};
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::photometry::{PhotometricType, Photometry, flux};
 use caustix::report::far_field::FarFieldStatistics;
 use caustix::run::{Outcome, Plan, Settings, trace};
@@ -92,7 +92,7 @@ const MOST_NODES: usize = 10_000;
 fn all_come_back(files: impl Iterator<Item = impl AsRef<Path>>, photons: u64) -> usize {
     let (mut tables, mut within, mut nodes) = (0, 0, 0);
     for path in files {
-        let photometry = lm63::read(path).unwrap();
+        let photometry = photometric::read(path).unwrap();
         // Larger ones would take minutes, and are no other case.
         if is_a_far_field(&photometry) && photometry.web.full_grid().intensity_cd.len() < MOST_NODES {
             let (some, all) = nodes_within(&photometry, photons);
@@ -140,7 +140,7 @@ fn asymmetric() -> Photometry {
         text(&h),
         planes.join("\n")
     );
-    lm63::parse(file.as_bytes(), "asymmetric.ies").unwrap()
+    photometric::parse(file.as_bytes(), "asymmetric.ies").unwrap()
 }
 
 /// A level mirror turns z round: seen from above with C = 0 towards the same side, C runs the other way.
@@ -195,7 +195,7 @@ edge_v = [0, 10, 0]
 #[test]
 fn other_types_become_type_c() {
     for name in ["headlamp_a.ies", "floodlight_b.ies"] {
-        let photometry = lm63::read(data::own_file(name)).unwrap();
+        let photometry = photometric::read(data::own_file(name)).unwrap();
         let lamp = Photometric::new(&photometry, DVec3::ZERO, down(), None).unwrap();
         let off = |step: f64| {
             let far = spec().with_gamma_deg(&[step]).unwrap().with_c_deg(&[step]).unwrap();
@@ -350,7 +350,7 @@ fn an_asymmetry_is_measured_whatever_the_noise() {
 #[test]
 fn steps_are_chosen_by_what_the_light_shows() {
     let step = |name: &str, photons: u64| {
-        let scene = bare(&lm63::read(data::own_file(name)).unwrap(), spec());
+        let scene = bare(&photometric::read(data::own_file(name)).unwrap(), spec());
         let s = FarFieldStatistics::new(&scene, &run(&scene, photons, 8), 0);
         let (unresolved, noise) = (s.unresolved.unwrap(), s.noise.unwrap());
         let most = 1.5 * noise + 2.0 * unresolved.standard_error.unwrap();
@@ -455,7 +455,10 @@ fn what_cannot_be_is_refused_in_words() {
     };
     for (keys, words) in [
         ("axis = [0, 0, -1]\nc_deg = 7", "c_deg = 7; required: a step that divides 360 degrees"),
-        ("axis = [0, 0, -1]\ngamma_deg = [0, 30]", "gamma_deg = [0, 30]; required: a step that divides 90 degrees"),
+        (
+            "axis = [0, 0, -1]\ngamma_deg = [0, 30]",
+            "gamma_deg = [0, 30]; required: a step that divides 90 degrees",
+        ),
         ("axis = [0, 0, -1]\ngamma_deg = \"1\"", "write it without quotes: 1"),
         ("axis = [0, 0, 0]", "axis = [0, 0, 0]; required: a direction [x, y, z] that is not zero"),
         ("axis = [0, 0, 1]\nup = [0, 0, 2]", "not parallel to axis"),

@@ -6,7 +6,7 @@
 
 use caustix::emitter::{AimFrame, Emitter, Emitters, Photometric};
 use caustix::files::bytes::Base;
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::files::scene_toml;
 use caustix::photometry::{PhotometricType, Photometry};
 use caustix::sample::coordinates::Coordinates;
@@ -30,7 +30,7 @@ fn emitter(photometry: &Photometry) -> Photometric {
 }
 
 fn read(name: &str) -> Photometry {
-    lm63::read(data::own_file(name)).unwrap()
+    photometric::read(data::own_file(name)).unwrap()
 }
 
 /// A direction worked out by hand and what the file says there.

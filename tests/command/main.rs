@@ -10,9 +10,11 @@ mod check;
 mod contract;
 #[cfg(unix)]
 mod interrupts;
+mod lamp_set;
 mod maps_open;
 mod misuse;
 mod outputs;
+mod photometry;
 mod picture;
 mod result_set;
 #[cfg(unix)]

@@ -35,7 +35,7 @@ fn directions_are_written_in_the_files_own_angles() {
         assert_eq!(lines.next(), Some("index,vertical_deg,horizontal_deg,x,y,z,coordinates"));
         // A lamp that hangs: the world's axes are (r, u, -a).
         let lamp = Luminaire::new(DVec3::NEG_Z, DVec3::Y);
-        let web = caustix::files::lm63::read(data::own_file(file)).unwrap().web;
+        let web = caustix::files::photometric::read(data::own_file(file)).unwrap().web;
         let mut rows = 0;
         for (i, line) in lines.enumerate() {
             let row: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();

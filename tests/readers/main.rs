@@ -13,6 +13,9 @@ mod make_ies;
 
 mod broken_scene;
 mod damage;
+mod eulumdat_damaged;
+mod eulumdat_made;
+mod eulumdat_real;
 mod mistakes;
 mod mistakes_told;
 mod mistakes_warned;
@@ -30,6 +33,7 @@ mod scene_builder;
 mod scene_camera;
 mod scene_damaged;
 mod scene_errors;
+mod scene_lamps;
 mod scene_limits;
 mod scene_own;
 mod scene_shape_errors;

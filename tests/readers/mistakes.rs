@@ -2,8 +2,8 @@
 
 use caustix::error::{Diagnostic, Kind};
 use caustix::files::bytes::Base;
-use caustix::files::lm63;
 use caustix::files::obj::{ObjOptions, parse_obj};
+use caustix::files::photometric;
 use caustix::files::scene_toml;
 use caustix::photometry::Summary;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn lamp(candela: &str, opening: &str) -> String {
 }
 
 fn ies(text: &str) -> Result<caustix::photometry::Photometry, Diagnostic> {
-    lm63::parse(text.as_bytes(), "a.ies")
+    photometric::parse(text.as_bytes(), "a.ies")
 }
 
 #[test]
@@ -65,13 +65,17 @@ fn commas_between_numbers_of_a_photometric_file_part_them() {
 
 #[test]
 fn files_of_another_format_are_named() {
+    // A EULUMDAT file, whatever it is called, that ends too early, or has commas: by its own reader.
     let ldt = "maker\r\n1\r\n1\r\n19\r\n10\r\n19\r\n5\r\nr\r\nlum\r\nno\r\nf.ldt\r\n2024\r\n";
     for text in [ldt.to_owned(), ldt.replace("\r\n5\r\n", "\r\n5,0\r\n")] {
         let error = ies(&text).unwrap_err();
-        assert_eq!((error.kind(), error.line()), (Kind::Unavailable, Some(1)), "{error}");
-        assert_eq!(error.found(), "an EULUMDAT file (.ldt)");
-        assert!(error.advice().unwrap().contains("convert"), "{error}");
+        assert_eq!((error.kind(), error.line()), (Kind::Missing, Some(12)), "{error}");
+        assert_eq!(error.found(), "the end of the file");
+        assert_eq!(error.required(), "a line: length of the luminaire");
     }
+    let error = ies("<?xml version=\"1.0\"?><IESTM33-22>").unwrap_err();
+    assert_eq!((error.kind(), error.found()), (Kind::Unavailable, "an IES TM-33 file (XML)"));
+    assert!(error.advice().unwrap().contains("convert the file to IES LM-63 or EULUMDAT"), "{error}");
     let mesh = |bytes: &[u8]| parse_obj(bytes, Path::new("a.obj"), &ObjOptions::default());
     let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
     let mut binary = vec![0u8; 80];

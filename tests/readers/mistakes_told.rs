@@ -153,7 +153,7 @@ fn marks_of_byte_order_are_read_and_utf_16_is_named() {
     assert_eq!(format!("{:?}", marked.name), format!("{:?}", plain.name));
     let lamp = std::fs::read(crate::support::data::in_project("ies/downlight.ies")).unwrap();
     let flux = |bytes: &[u8]| {
-        caustix::photometry::Summary::new(&caustix::files::lm63::parse(bytes, "a").unwrap()).flux_lm
+        caustix::photometry::Summary::new(&caustix::files::photometric::parse(bytes, "a").unwrap()).flux_lm
     };
     // pi times 1000 cd of a cosine, by the trapezoid.
     assert!((flux(&[b"\xef\xbb\xbf", &lamp[..]].concat()) - 1000.0 * std::f64::consts::PI).abs() < 1.0);

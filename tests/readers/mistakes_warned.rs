@@ -1,7 +1,7 @@
 //! Mistakes of new users in scenes that can be traced: warnings, and none where the same is right.
 
 use caustix::error::warning::{Severity, Warning};
-use caustix::files::{bsdf, lm63, scene_toml};
+use caustix::files::{bsdf, photometric, scene_toml};
 use caustix::photometry::Summary;
 use caustix::report::statistics::ReceiverStatistics;
 use caustix::report::text::summary;
@@ -153,7 +153,7 @@ fn no_own_or_real_table_is_suspected() {
 #[test]
 fn a_flux_far_from_the_files_own_is_told() {
     let file = data::own_file("spot.ies");
-    let own_lm = Summary::new(&lm63::read(&file).unwrap()).flux_emitted_lm;
+    let own_lm = Summary::new(&photometric::read(&file).unwrap()).flux_emitted_lm;
     let with = |flux: &str| {
         let lamp =
             "[[emitter]]\ntype = \"photometric\"\nname = \"lamp\"\nfile = \"a.ies\"\nposition = [0, 0, 2]\n";

@@ -1,8 +1,8 @@
 //! Photometric files as programs really write them: what is read, and what is said of it.
 
 use caustix::error::Kind;
-use caustix::files::lm63;
-use caustix::photometry::{Photometry, Revision, Summary};
+use caustix::files::photometric;
+use caustix::photometry::{Format, Photometry, Revision, Summary};
 
 /// Of these intensities each 15 degrees: 4107.64 lm by the trapezoid, 4095.13 lm of the bilinear table (computed elsewhere).
 const CANDELA: &str = "1000 966 1083 957 717 384 0";
@@ -40,7 +40,7 @@ impl File<'_> {
     }
 
     fn read(&self) -> Photometry {
-        lm63::parse(self.text().as_bytes(), "a.ies").unwrap()
+        photometric::parse(self.text().as_bytes(), "a.ies").unwrap()
     }
 
     fn summary(&self) -> Summary {
@@ -91,7 +91,7 @@ fn versions_in_other_spellings_name_their_edition() {
     ] {
         let head = format!("{head}\n[TEST] made up");
         let file = File { head: &head, field12: "0.9", ..FILE };
-        assert_eq!(file.read().revision, revision, "{head}");
+        assert_eq!(file.read().format, Format::Lm63(revision), "{head}");
         near(file.summary().flux_emitted_lm, emitted_lm, 5e-3);
         let warnings = file.summary().warnings;
         let said = format!("the rules of {}", revision.name());
@@ -108,7 +108,7 @@ fn a_version_line_need_not_be_the_first() {
         ("written\rIESNA:LM-63-02", 2, Revision::Y2002, EMITTED_LM),
     ] {
         let file = File { head, field12: "0.9", ..FILE };
-        assert_eq!(file.read().revision, revision, "{head}");
+        assert_eq!(file.read().format, Format::Lm63(revision), "{head}");
         near(file.summary().flux_emitted_lm, emitted_lm, 5e-3);
         let warnings = file.summary().warnings;
         let place = format!("a.ies:{line}:1");
@@ -119,11 +119,11 @@ fn a_version_line_need_not_be_the_first() {
         ["made by hand\nIES file of a tool", "maker\nLM-63-1995 is not followed", "[TEST] IESNA:LM-63-2002"]
     {
         let file = File { head, field12: "0.9", ..FILE };
-        assert_eq!(file.read().revision, Revision::Y1986, "{head}");
+        assert_eq!(file.read().format, Format::Lm63(Revision::Y1986), "{head}");
         near(file.summary().flux_emitted_lm, EMITTED_LM * 0.9, 5e-3);
     }
     let two = File { head: "IESNA:LM-63-2002\nIESNA91", ..FILE };
-    assert_eq!(two.read().revision, Revision::Y2002);
+    assert_eq!(two.read().format, Format::Lm63(Revision::Y2002));
     assert!(two.warning().contains("one version line"), "{}", two.warning());
 }
 
@@ -189,8 +189,8 @@ fn noise_about_multiples_of_90_is_none() {
         assert!(file.warning().contains("a.ies:6:"), "{}", file.warning());
     }
     // Beyond 0.001 degrees they are what they are.
-    let error =
-        lm63::parse(File { h: "0 90.002", candela: two, ..FILE }.text().as_bytes(), "a.ies").unwrap_err();
+    let error = photometric::parse(File { h: "0 90.002", candela: two, ..FILE }.text().as_bytes(), "a.ies")
+        .unwrap_err();
     assert_eq!((error.kind(), error.line()), (Kind::Range, Some(7)), "{error}");
     let close = File { h: "0 90 90.0005 180", candela: &format!("{PLANES}\n{CANDELA}"), ..FILE };
     assert_eq!(close.read().web.horizontal_deg, [0.0, 90.0, 90.0005, 180.0]);
@@ -233,7 +233,7 @@ fn planes_counted_from_minus_180_are_turned() {
     assert!(differs.warnings.iter().any(|w| w.contains(seam)), "{:?}", differs.warnings);
     // Half a circle below 0 is none of the ranges, and is refused as before.
     let half = File { h: "-180 -90 0", candela: PLANES, ..FILE };
-    assert!(lm63::parse(half.text().as_bytes(), "a.ies").is_err());
+    assert!(photometric::parse(half.text().as_bytes(), "a.ies").is_err());
 }
 
 #[test]
@@ -312,7 +312,7 @@ fn a_beam_ends_where_it_has_fallen_to_a_half() {
     near(beam("0 10 20 30 90", "100 80 51 50 0").0, 60.0, 1e-12);
     // A multiplier that rounds both: still the plateau.
     let text = File { v: "0 10 20 30 40 90", candela: "300 300 30 30 30 0", ..FILE }.text();
-    let scaled = lm63::parse(text.replace("1 -1 1 ", "1 -1 1.1 ").as_bytes(), "a.ies").unwrap();
+    let scaled = photometric::parse(text.replace("1 -1 1 ", "1 -1 1.1 ").as_bytes(), "a.ies").unwrap();
     near(Summary::new(&scaled).field_angle_deg.unwrap(), 40.0, 1e-12);
 }
 
@@ -368,7 +368,7 @@ fn commas_of_numbers_are_refused_with_place_and_remedy() {
     let thousands = "3,000 2,898 3,249 2,871 2,151 1,152 0";
     let five = "300,0000 298,8584 295,4423 289,7777 281,9078 271,8923 0,0000";
     for candela in [decimal, thousands, five, &decimal.replace(' ', "\n"), "1,000.5 966 1083 957 717 384 0"] {
-        let error = lm63::parse(File { candela, ..FILE }.text().as_bytes(), "a.ies").unwrap_err();
+        let error = photometric::parse(File { candela, ..FILE }.text().as_bytes(), "a.ies").unwrap_err();
         let first = candela.split_ascii_whitespace().next().unwrap();
         assert_eq!((error.line(), error.column()), (Some(8), Some(1)), "{error}");
         assert!(

@@ -1,6 +1,6 @@
 //! Damaged photometric files: a result or a diagnostic, never a panic, a hang or memory beyond the file's size.
 
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::photometry::Summary;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -10,8 +10,8 @@ use crate::support::data;
 use crate::support::random::Generator;
 
 /// Reads bytes and, if they are read, asks everything a program would ask; true if they were read.
-fn survives(bytes: &[u8]) -> bool {
-    match lm63::parse(bytes, "damaged.ies") {
+pub fn survives(bytes: &[u8]) -> bool {
+    match photometric::parse(bytes, "damaged.ies") {
         Ok(photometry) => {
             let summary = Summary::new(&photometry);
             let all =
@@ -20,7 +20,7 @@ fn survives(bytes: &[u8]) -> bool {
             for (v, h) in [(0.0, 0.0), (90.0, 359.999), (-12.5, -90.0), (180.0, 1e9), (f64::NAN, f64::NAN)] {
                 assert!(photometry.web.intensity_cd(v, h) >= 0.0);
             }
-            let text = caustix::report::photometry::text(&photometry, &summary);
+            let text = caustix::report::photometry::text(&photometry, &summary, None);
             assert!(text.contains("flux"));
             true
         }

@@ -1,6 +1,6 @@
 //! The project's own photometric files: what the formulas give is what is on disk, and what the README states.
 
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::photometry::{PhotometricType, Summary};
 use std::path::PathBuf;
 
@@ -46,7 +46,7 @@ fn fluxes_are_those_of_the_readme() {
     let rows = stated();
     assert_eq!(rows.len(), make_ies::files().len());
     for (name, trapezoid, emitted, formula, max) in rows {
-        let photometry = lm63::read(folder().join(&name)).unwrap();
+        let photometry = photometric::read(folder().join(&name)).unwrap();
         assert_eq!(photometry.warnings, [], "{name}");
         let summary = Summary::new(&photometry);
         println!("{name}: {} {} {}", summary.flux_lm, summary.flux_emitted_lm, summary.max_candela);
@@ -72,7 +72,7 @@ fn fluxes_are_those_of_the_readme() {
 
 #[test]
 fn the_fixed_experiment_is_what_it_was_said_to_be() {
-    let web = lm63::read(folder().join("wavy_glass.ies")).unwrap().web;
+    let web = photometric::read(folder().join("wavy_glass.ies")).unwrap().web;
     assert_eq!(
         (web.photometric_type, web.vertical_deg.len(), web.horizontal_deg.len()),
         (PhotometricType::C, 37, 24)

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use caustix::emitter::{AimFrame, Emits, Emitter, Photometric};
 use caustix::error::Kind;
 use caustix::files::bytes::Base;
-use caustix::files::lm63;
 use caustix::files::obj::{self, ObjOptions};
+use caustix::files::photometric;
 use caustix::files::scene_toml::{RunDefaults, built_in, parse, read};
 use caustix::geometry::{Facing, Formula, Heightfield, Mesh, Noise, Octave, Shape, Transform};
 use caustix::math::digest::sha256_hex;
@@ -59,7 +59,7 @@ fn lamp(scene: &Scene) -> (DVec3, DVec3) {
 
 /// That a lamp is that of a file of this project, turned this way.
 fn is_turned(lamp: &Photometric, file: &str, aim: DVec3, up: DVec3) {
-    let photometry = lm63::read(project().join("ies").join(file)).unwrap();
+    let photometry = photometric::read(project().join("ies").join(file)).unwrap();
     let expected =
         Photometric::new(&photometry, lamp.position(), AimFrame::new(aim, Some(up)).unwrap(), None).unwrap();
     assert_eq!(lamp.flux_lm(), expected.flux_lm());

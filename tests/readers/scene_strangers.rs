@@ -264,7 +264,7 @@ fn pipes_devices_and_folders_are_refused_by_every_reader() {
         let direct = path(file);
         for found in [
             read(&direct).unwrap_err()[0].to_string(),
-            caustix::files::lm63::read(&direct).unwrap_err().to_string(),
+            caustix::files::photometric::read(&direct).unwrap_err().to_string(),
             caustix::files::bsdf::read(&direct).unwrap_err().to_string(),
         ] {
             assert!(found.contains(what), "{file}: {found}");
@@ -364,7 +364,7 @@ fn no_message_repeats_a_foreign_file() {
 fn the_caps_of_the_manual_are_those_of_the_code() {
     use caustix::files::bytes::{FILE_LIMIT_BYTES, FILES_LIMIT_BYTES};
     use caustix::files::scene_toml::{MOST_PARTS, SCENE_LIMIT_BYTES, asked};
-    use caustix::files::{bsdf, height_image, lm63};
+    use caustix::files::{bsdf, height_image, photometric};
     use caustix::geometry::{MOST_CELLS, MOST_PAIRS};
     use caustix::scene::{camera, receiver};
     let power = |n: u64| {
@@ -378,7 +378,7 @@ fn the_caps_of_the_manual_are_those_of_the_code() {
         ("a file that it names; all of them", two(bytes(FILE_LIMIT_BYTES), bytes(FILES_LIMIT_BYTES))),
         (
             "a photometric file; a scattering table",
-            two(bytes(lm63::MAX_FILE_BYTES), bytes(bsdf::MAX_FILE_BYTES)),
+            two(bytes(photometric::MAX_FILE_BYTES), bytes(bsdf::MAX_FILE_BYTES)),
         ),
         ("emitters, materials, surfaces, receivers", format!("{MOST_PARTS} each")),
         ("candela values, once for each lamp", power(asked::MOST_CANDELA)),

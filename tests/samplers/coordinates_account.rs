@@ -6,7 +6,7 @@
 //! equations (4) and (6) as METHOD says. (K. Dmitriev, "From Monte Carlo to quasi-Monte Carlo".)
 
 use caustix::emitter::{AimFrame, Emission, Emits, Emitter, Emitters, Isotropic, Photometric};
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::geometry::{Rectangle, Shape, Sphere, Surface, box_mesh};
 use caustix::sample::coordinates::{Chooser, Coordinates, Purpose};
 use caustix::sample::method::Sampling;
@@ -273,7 +273,7 @@ fn glass_box(min: DVec3, max: DVec3) -> (Surface, Material) {
 }
 
 fn table_lamp(file: &str, position: DVec3) -> Emitter {
-    let photometry = lm63::read(data::own_file(file)).unwrap();
+    let photometry = photometric::read(data::own_file(file)).unwrap();
     let aim = DVec3::new(0.1, -0.2, -1.0);
     let frame = AimFrame::new(aim, None).unwrap();
     Emitter::Photometric(Photometric::new(&photometry, position, frame, None).unwrap())
@@ -392,7 +392,7 @@ fn an_emission_that_spends_its_coordinate_takes_a_fresh_one() {
     for (share, table, drawn) in [(1e-13, false, 3), (1e-12, false, 2), (1e-13, true, 3)] {
         let big = point(DVec3::ZERO, 1e12);
         let rare = if table {
-            let photometry = lm63::read(data::own_file("spot.ies")).unwrap();
+            let photometry = photometric::read(data::own_file("spot.ies")).unwrap();
             let frame = AimFrame::new(DVec3::NEG_Z, None).unwrap();
             let e = Photometric::new(&photometry, DVec3::Z, frame, Some(1e12 * share)).unwrap();
             Emitter::Photometric(e)

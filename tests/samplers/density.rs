@@ -7,7 +7,7 @@
 //! of each is Sidak's for all files together.
 
 use caustix::emitter::{AimFrame, Emits, Emitter, Emitters, Photometric};
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::math::solve::Solver;
 use caustix::photometry::{PhotometricType, Photometry, Web};
 use caustix::sample::coordinates::Coordinates;
@@ -164,7 +164,7 @@ fn check_density(files: &[PathBuf]) {
     let mut smallest = 1.0f64;
     for (k, path) in files.iter().enumerate() {
         let name = path.file_name().unwrap().to_str().unwrap();
-        let photometry = lm63::read(path).unwrap();
+        let photometry = photometric::read(path).unwrap();
         let density = Density::new(&photometry.web);
         let samples = sampled_angles(FEWER, &photometry, &density, 1 + k as u64);
         let p = p_values(&samples, &density);
@@ -181,7 +181,7 @@ fn check_density(files: &[PathBuf]) {
 
 /// The emitter's flux is the integral of the file's candela, to the rounding of the sums.
 fn check_flux(path: &Path) {
-    let photometry = lm63::read(path).unwrap();
+    let photometry = photometric::read(path).unwrap();
     let expected = Density::new(&photometry.web).total() * photometry.factor();
     let got = emitter(&photometry).flux_lm();
     assert!((got / expected - 1.0).abs() < 1e-11, "{}: {got} lm, quadrature {expected} lm", path.display());
@@ -190,7 +190,7 @@ fn check_flux(path: &Path) {
 /// A photon's coordinates come back from its direction by quadrature, at points that have nothing to do with
 /// the grid.
 fn check_invert(path: &Path) {
-    let photometry = lm63::read(path).unwrap();
+    let photometry = photometric::read(path).unwrap();
     let full = photometry.web.full_grid();
     let table = SphereTable::new(full.polar_rad, full.azimuth_rad, full.intensity_cd);
     let grid = emitter(&photometry).table().unwrap().clone();
@@ -219,7 +219,7 @@ fn own_files_are_sampled_with_their_density_by_every_rejection() {
     let files = data::own_files();
     let level = sidak(FAMILY, files.len() * TESTS_A_FILE * Rejection::ALL.len());
     for (k, path) in files.iter().enumerate() {
-        let photometry = lm63::read(path).unwrap();
+        let photometry = photometric::read(path).unwrap();
         let judge = Judge::new(Density::new(&photometry.web));
         for rejection in Rejection::ALL {
             let sampling = Sampling::Rejection(rejection);
@@ -258,7 +258,7 @@ fn real_files_invert_to_the_coordinates() {
 #[test]
 fn wrong_densities_are_refused() {
     let level = sidak(FAMILY, 400);
-    let photometry = lm63::read(data::own_file("floodlight_b.ies")).unwrap();
+    let photometry = photometric::read(data::own_file("floodlight_b.ies")).unwrap();
     let right = Density::new(&photometry.web);
     let samples = sampled_angles(SAMPLES, &photometry, &right, 5);
     assert!(p_values(&samples, &right).into_iter().all(|p| p > level));
@@ -302,7 +302,7 @@ fn wrong_densities_are_refused() {
 /// as it is but for a turn by one plane.
 #[test]
 fn a_turn_by_one_plane_is_refused() {
-    let photometry = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    let photometry = photometric::read(data::own_file("wavy_glass.ies")).unwrap();
     assert_eq!(photometry.web.photometric_type, PhotometricType::C);
     let samples = sampled_angles(SAMPLES, &photometry, &Density::new(&photometry.web), 6);
     let mut turned = photometry.web.clone();

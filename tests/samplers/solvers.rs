@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::math::solve::Solver;
 use caustix::sample::grid::Grid;
 use caustix::sequence::hash::mix64;
@@ -47,7 +47,7 @@ fn the_default_needs_few_evaluations() {
     // The prototype's quadratic start with plain Newton steps needed 2.8.
     assert!(all.mean_evaluations() <= 2.0, "{}", all.mean_evaluations());
     for file in ["wavy_glass.ies", "spot.ies", "headlamp_a.ies", "floodlight_b.ies"] {
-        let web = lm63::read(data::own_file(file)).unwrap().web;
+        let web = photometric::read(data::own_file(file)).unwrap().web;
         let cases: Vec<Case> = of_table(&web).into_iter().map(|(case, _)| case).collect();
         for solver in Solver::ALL {
             let score = Score::of(Method::Own(solver), &cases);

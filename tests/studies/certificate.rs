@@ -1,10 +1,10 @@
 //! The certificate: right samplers pass on every file, variant and sequence; samplers that are a little wrong do not.
 
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::lab::certificate::sampler::{made_from, sample};
 use caustix::lab::certificate::{Certificate, Density, Draw, Judge, PointKind, REPLICATES, TestName};
 use caustix::math::solve::Solver;
-use caustix::photometry::Photometry;
+use caustix::photometry::{Format, Photometry};
 use caustix::run::{Algorithm, Variant};
 use caustix::sample::angles::Row;
 use caustix::sample::cell::Cell;
@@ -14,10 +14,11 @@ use caustix::sample::grid::Grid;
 use caustix::sequence::independent::IndependentPoints;
 use caustix::sequence::owen::OwenPoints;
 use caustix::sequence::{Points, Sequence, to_unit_f64};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::support::data;
 use crate::support::density::{Density as Reference, ends};
+use crate::support::ldt::{Ldt, NEITHER, TO_90, Table};
 use crate::support::sphere_table::SphereTable;
 
 fn grid_of(photometry: &Photometry) -> Grid {
@@ -56,7 +57,7 @@ fn summary(certificate: &Certificate) -> String {
 }
 
 fn check_passes(path: &Path, algorithm: &Algorithm, seed: u64, n: u64) -> Certificate {
-    let photometry = lm63::read(path).unwrap();
+    let photometry = photometric::read(path).unwrap();
     let certificate = certify(&photometry, algorithm, seed, n);
     let name = path.file_name().unwrap().to_str().unwrap();
     println!("{name} {}: {}", algorithm.name(), summary(&certificate));
@@ -93,7 +94,7 @@ fn every_variant_and_sequence_passes_on_the_built_in_lamp() {
 /// square roots of primes are far from uniform in pairs: the density is right, the points are not, and it shows.
 #[test]
 fn poor_points_are_refused() {
-    let lamp = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("wavy_glass.ies")).unwrap();
     for name in ["qmc:table:halton", "qmc:table:weyl"] {
         let certificate = certify(&lamp, &Algorithm::parse(name).unwrap(), 1, 1 << 17);
         println!("{name}: {}", summary(&certificate));
@@ -109,6 +110,30 @@ fn own_files_pass() {
     for path in data::own_files() {
         for name in ["mc", "qmc-inverse-reuse"] {
             check_passes(&path, &Algorithm::parse(name).unwrap(), 2, 1 << 15);
+        }
+    }
+}
+
+/// EULUMDAT: half of the planes stored, from C270 on; and real files.
+#[test]
+fn eulumdat_files_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut files: Vec<PathBuf> = Vec::new();
+    for (name, isym, table) in [("isym3.ldt", 3, TO_90), ("isym0.ldt", 0, NEITHER)] {
+        let bell: Table = if isym == 3 { |gamma, c| TO_90(gamma, c) * (1.0 + gamma.cos()) } else { table };
+        files.push(folder.path().join(name));
+        std::fs::write(&files[files.len() - 1], Ldt::new(isym, bell).text()).unwrap();
+    }
+    let names = [
+        "copyleft/eurs__road_luminaire.ldt",
+        "copyleft/gldf__lampsets.ldt",
+        "permissive/pv-ldt__no_symmetry.ldt",
+    ];
+    files.extend(data::real_folder().into_iter().flat_map(|f| names.map(|name| f.join("ldt").join(name))));
+    for path in files {
+        assert_eq!(photometric::read(&path).unwrap().format, Format::Eulumdat);
+        for name in ["mc", "qmc-inverse-reuse"] {
+            check_passes(&path, &Algorithm::parse(name).unwrap(), 4, 1 << 15);
         }
     }
 }
@@ -129,7 +154,7 @@ fn real_files_pass() {
 fn masses_agree_with_another_quadrature() {
     let files = data::own_files().into_iter().chain(data::real_files().into_iter().flatten());
     for path in files {
-        let photometry = lm63::read(&path).unwrap();
+        let photometry = photometric::read(&path).unwrap();
         let density = Density::new(&photometry.web).unwrap();
         let reference = Reference::new(&photometry.web);
         let masses = reference.masses(&reference.p_breaks, &reference.q_breaks);
@@ -148,7 +173,7 @@ fn masses_agree_with_another_quadrature() {
 /// False alarms: over seeds the smallest corrected p of right samplers is no smaller than so many tests give.
 #[test]
 fn right_samplers_rarely_fail() {
-    let photometry = lm63::read(data::own_file("floodlight_b.ies")).unwrap();
+    let photometry = photometric::read(data::own_file("floodlight_b.ies")).unwrap();
     for name in ["mc", "qmc", "qmc-inverse", "qmc-inverse-reuse"] {
         let algorithm = Algorithm::parse(name).unwrap();
         let smallest = |seed| {
@@ -264,14 +289,14 @@ const KINDS: [PointKind; 2] = [PointKind::Random, PointKind::LowDiscrepancy];
 #[test]
 fn one_flux_2_per_cent_off_is_refused() {
     // The brightest cell of `spot` is a ring with a fifth of the flux: 2 % of 1e5 hits in it is 7 sigma of random points.
-    let spot = lm63::read(data::own_file("spot.ies")).unwrap();
+    let spot = photometric::read(data::own_file("spot.ies")).unwrap();
     for kind in KINDS {
         assert!(judged(&spot, Wrong::Right, kind, 500_000).passed);
         let certificate = judged(&spot, Wrong::Flux(1.02), kind, 500_000);
         assert!(failed(&certificate).contains(&TestName::LargestCell), "{kind:?}");
     }
     // That of `wavy_glass` has 2 %: there random points see nothing, as they must, and a randomised net sees it at once.
-    let lamp = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("wavy_glass.ies")).unwrap();
     assert!(judged(&lamp, Wrong::Flux(1.02), PointKind::Random, 200_000).passed);
     for factor in [0.98, 1.02] {
         let certificate = judged(&lamp, Wrong::Flux(factor), PointKind::LowDiscrepancy, 200_000);
@@ -281,7 +306,7 @@ fn one_flux_2_per_cent_off_is_refused() {
 
 #[test]
 fn a_remainder_that_is_not_divided_is_refused() {
-    let lamp = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("wavy_glass.ies")).unwrap();
     for kind in KINDS {
         assert!(judged(&lamp, Wrong::Right, kind, 200_000).passed);
         let failed = failed(&judged(&lamp, Wrong::NoDivision, kind, 200_000));
@@ -296,7 +321,7 @@ fn a_remainder_that_is_not_divided_is_refused() {
 
 #[test]
 fn theta_without_the_weight_of_the_solid_angle_is_refused() {
-    let lamp = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("wavy_glass.ies")).unwrap();
     for kind in KINDS {
         let failed = failed(&judged(&lamp, Wrong::NoSine, kind, 200_000));
         assert!(failed.contains(&TestName::KsThetaInRow), "{failed:?}");
@@ -306,7 +331,7 @@ fn theta_without_the_weight_of_the_solid_angle_is_refused() {
 #[test]
 fn directions_one_column_on_are_refused() {
     // A lamp without dark cells, so that the tests must see it and not an empty cell.
-    let lamp = lm63::read(data::own_file("pool_lamp.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("pool_lamp.ies")).unwrap();
     for kind in KINDS {
         let certificate = judged(&lamp, Wrong::Shifted, kind, 200_000);
         let failed = failed(&certificate);
@@ -319,7 +344,7 @@ fn directions_one_column_on_are_refused() {
 
 #[test]
 fn one_draw_in_the_dark_is_enough() {
-    let lamp = lm63::read(data::own_file("wavy_glass.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("wavy_glass.ies")).unwrap();
     let density = Density::new(&lamp.web).unwrap();
     let grid = grid_of(&lamp);
     let at = |theta_deg: f64, phi_deg: f64| {
@@ -341,7 +366,7 @@ fn one_draw_in_the_dark_is_enough() {
 
 #[test]
 fn few_draws_prove_nothing_and_none_is_no_failure() {
-    let lamp = lm63::read(data::own_file("batwing.ies")).unwrap();
+    let lamp = photometric::read(data::own_file("batwing.ies")).unwrap();
     for n in [1, 2, 3, 100] {
         assert!(certify(&lamp, &Algorithm::from(Variant::QmcInverseReuse), 1, n).passed, "{n}");
         assert!(certify(&lamp, &Algorithm::from(Variant::Mc), 1, n).passed, "{n}");

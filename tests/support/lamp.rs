@@ -1,7 +1,7 @@
 //! Light of a luminaire that meets a surface straight, from the file's own table: nothing of the sampler is
 //! used.
 
-use caustix::files::lm63;
+use caustix::files::photometric;
 use caustix::photometry::Photometry;
 use caustix::photometry::web::PhotometricType;
 use glam::DVec3;
@@ -19,7 +19,7 @@ pub struct Lamp {
 impl Lamp {
     /// One of the project's photometric files.
     pub fn new(file: &str, position: DVec3, aim: DVec3, up: DVec3) -> Self {
-        let photometry = lm63::read(own_file(file)).unwrap();
+        let photometry = photometric::read(own_file(file)).unwrap();
         let aim = aim.normalize();
         let up = (up - up.dot(aim) * aim).normalize();
         Self { photometry, position, aim, up }

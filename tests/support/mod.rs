@@ -12,6 +12,7 @@ pub mod density;
 pub mod given;
 pub mod judge;
 pub mod lamp;
+pub mod ldt;
 pub mod local;
 pub mod maps;
 pub mod pictures;

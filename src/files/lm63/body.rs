@@ -1,23 +1,15 @@
 //! The numbers: the record of ten, the record of three, angles and candela.
 
-use super::angles;
+use super::tokens::Tokens;
+use super::turned::turned;
 use crate::error::{Diagnostic, Kind, Result};
-use crate::files::lm63::tokens::{Number, Tokens};
+use crate::files::candela::Said;
+use crate::files::candela::angles::snap;
+use crate::files::candela::checks::{Candela, MAX_ANGLES, MAX_FACTOR, poles, seam};
+use crate::files::candela::number::{Number, values};
 use crate::photometry::axes::{Axis, AxisNote, check_axes};
 use crate::photometry::opening::sign;
-use crate::photometry::{LuminousOpening, PhotometricType, Photometry, Revision, Tilt, Web};
-
-/// Angles on one axis, and pairs of a tilt table, that are read at most. The finest real table has 721.
-const MAX_ANGLES: usize = 100_000;
-
-/// Intensities above this are refused: no sum over a sphere can overflow then. The sun has 3e27 cd.
-const MAX_CANDELA: f64 = 1e30;
-
-/// Ballast factors and field 12 above this are refused, for the same reason.
-const MAX_FACTOR: f64 = 1e6;
-
-/// Share of the maximum that passes for measurement noise: negative intensities, planes that should be equal.
-const NOISE: f64 = 1e-3;
+use crate::photometry::{Format, LuminousOpening, PhotometricType, Photometry, Revision, Tilt, Web};
 
 /// The stream and what is wrong in it and tolerated.
 pub(crate) struct Reader<'a> {
@@ -37,6 +29,10 @@ impl<'a> Reader<'a> {
             d = d.hint(hint);
         }
         self.warnings.push(self.tokens.place(offset, d));
+    }
+
+    fn tell(&mut self, said: Said) {
+        self.warn(said.offset, Kind::Range, &said.found, &said.required, &said.hint);
     }
 
     /// Keeps a warning about a number that is out of its range.
@@ -120,18 +116,16 @@ impl<'a> Reader<'a> {
         let input_watts = self.tolerated("input watts", |x| x >= 0.0, "0 or more", "read as 0")?.max(0.0);
         let mut vertical = self.tokens.numbers(n_v, "vertical angle")?;
         let mut horizontal = self.tokens.numbers(n_h, "horizontal angle")?;
-        let snapped = [angles::snap("vertical", &mut vertical), angles::snap("horizontal", &mut horizontal)];
-        let (turned, said) = angles::turned(photometric_type, &horizontal).unzip();
-        for said in snapped.into_iter().flatten().chain(said) {
-            self.warn(said.offset, Kind::Range, &said.found, &said.required, &said.hint);
-        }
+        let snapped = [snap("vertical", &mut vertical), snap("horizontal", &mut horizontal)];
+        let (turned, said) = turned(photometric_type, &horizontal).unzip();
+        snapped.into_iter().flatten().chain(said).for_each(|said| self.tell(said));
         let stored = horizontal.clone();
         if let Some(order) = &turned {
             horizontal = order.iter().map(|&(i, value)| Number { value, ..stored[i] }).collect();
         }
         self.check_angles(revision, photometric_type, &vertical, &horizontal)?;
         let mut candela = self.candela(n_v * n_h, multiplier)?;
-        self.check_seam(photometric_type, &candela, &stored);
+        seam(photometric_type, &candela, &stored).into_iter().for_each(|said| self.tell(said));
         if let Some(order) = &turned {
             candela = order.iter().flat_map(|&(i, _)| &candela[i * n_v..(i + 1) * n_v]).copied().collect();
         }
@@ -141,14 +135,17 @@ impl<'a> Reader<'a> {
             horizontal_deg: values(&horizontal),
             candela,
         };
-        self.check_poles(&web, [&vertical, &horizontal]);
+        poles(&web, [&vertical, &horizontal]).into_iter().for_each(|said| self.tell(said));
         Ok(Photometry {
             file: String::new(),
-            revision,
+            format: Format::Lm63(revision),
             labels: Vec::new(),
             tilt: Tilt::None,
             lamps,
             lumens_per_lamp: (lumens_per_lamp >= 0.0).then_some(lumens_per_lamp),
+            lamp_sets: Vec::new(),
+            lamp_set: 0,
+            eulumdat: None,
             multiplier,
             ballast_factor,
             field12: field12.value,
@@ -242,78 +239,21 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there. (Of H = -180
-    /// and H = 180 the latter is kept.)
-    fn check_seam(&mut self, photometric_type: PhotometricType, candela: &[f64], stored: &[Number]) {
-        let (first, last) = (stored[0], stored[stored.len() - 1]);
-        if photometric_type != PhotometricType::C || last.value - first.value != 360.0 {
-            return;
-        }
-        let n_v = candela.len() / stored.len();
-        let planes = candela[..n_v].iter().zip(&candela[candela.len() - n_v..]);
-        let step = planes.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        if step > NOISE * candela.iter().copied().fold(0.0, f64::max) {
-            let ends = format!("H = {} and H = {}", first.value, last.value);
-            let found = format!("planes {ends} that differ by up to {step} cd");
-            let hint = if first.value == 0.0 { "both are kept" } else { "the last is kept" };
-            self.warn(last.offset, Kind::Range, &found, "one plane, twice", hint);
-        }
-    }
-
-    /// At a pole all planes have one direction, and one intensity. Where a file gives several, the web has all of them there.
-    fn check_poles(&mut self, web: &Web, [vertical, horizontal]: [&[Number]; 2]) {
-        let n_v = vertical.len();
-        let is_b = web.photometric_type == PhotometricType::B;
-        let (name, across) = if is_b { ("horizontal", horizontal) } else { ("vertical", vertical) };
-        let poles = if web.photometric_type == PhotometricType::C { [0.0, 180.0] } else { [-90.0, 90.0] };
-        let most = web.max_intensity().intensity_cd;
-        for (i, angle) in across.iter().enumerate().filter(|(_, angle)| poles.contains(&angle.value)) {
-            let of_pole = |place: usize| if is_b { place / n_v == i } else { place % n_v == i };
-            let values = web.candela.iter().enumerate().filter(|&(place, _)| of_pole(place)).map(|(_, &c)| c);
-            // A plane that is 0 up to the pole is a shield's shadow, which no measurement blurs.
-            let lit = values.filter(|&c| c > 0.0);
-            let (low, high) = lit.fold((f64::MAX, 0.0f64), |(l, h), c| (l.min(c), h.max(c)));
-            if high - low > NOISE * most {
-                let found =
-                    format!("{low} to {high} cd at {name} angle {}, which is one direction", angle.value);
-                let hint = "all are kept: light near it depends on the plane";
-                self.warn(angle.offset, Kind::Range, &found, "one intensity in all planes", hint);
-            }
-        }
-    }
-
     /// The intensities times the multiplier; slightly negative ones become 0.
     fn candela(&mut self, n: usize, multiplier: f64) -> Result<Vec<f64>> {
-        let mut candela = Vec::with_capacity(n);
-        let mut lowest: Option<Number> = None;
+        let mut candela = Candela::new(n, multiplier);
         for _ in 0..n {
             let number = self.tokens.number("candela")?;
-            let value = number.value * multiplier;
-            if value.abs() > MAX_CANDELA {
-                return self.refuse(&number, Kind::Limit, "candela", &format!("at most {MAX_CANDELA:e}"));
-            }
-            if number.value < lowest.map_or(0.0, |n| n.value) {
-                lowest = Some(number);
-            }
-            candela.push(value);
+            candela.push(number).map_err(|said| self.refusal(Kind::Limit, said))?;
         }
-        let max = candela.iter().copied().fold(0.0, f64::max);
-        if let Some(number) = lowest {
-            if number.value * multiplier < -NOISE * max || max == 0.0 {
-                let required = "0 or more (noise down to -0.1 % of the maximum is taken as 0)";
-                return self.refuse(&number, Kind::Range, "candela", required);
-            }
-            self.doubt(&number, "candela", "0 or more", "negative intensities are taken as 0");
-            for c in &mut candela {
-                *c = c.max(0.0);
-            }
-        }
+        let (candela, said) = candela.finish().map_err(|said| self.refusal(Kind::Range, said))?;
+        said.into_iter().for_each(|said| self.tell(said));
         Ok(candela)
     }
-}
 
-pub fn values(list: &[Number]) -> Vec<f64> {
-    list.iter().map(|n| n.value).collect()
+    fn refusal(&self, kind: Kind, said: Said) -> Diagnostic {
+        self.tokens.place(said.offset, Diagnostic::new(kind, said.found, said.required))
+    }
 }
 
 /// Meaning of field 12 in LM-63-2019 (its section 5.13, Table 2). The code is text: trailing zeros may be missing.

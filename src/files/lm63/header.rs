@@ -1,6 +1,7 @@
 //! What stands before the numbers: version line, labels, `TILT=`.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::candela::lines::lines;
 use crate::files::excerpt::{line_column, quoted};
 use crate::photometry::Revision;
 use nom::bytes::complete::{tag_no_case, take_until};
@@ -22,22 +23,6 @@ pub(crate) struct Header<'a> {
     /// The byte where the numbers begin.
     pub body: usize,
     pub warnings: Vec<Diagnostic>,
-}
-
-/// Lines with their byte offsets; CR LF, LF and CR end a line, also mixed in one file.
-fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let mut offset = 0;
-    std::iter::from_fn(move || {
-        if offset >= text.len() {
-            return None;
-        }
-        let tail = &text[offset..];
-        let length = tail.find(['\r', '\n']).unwrap_or(tail.len());
-        let ending = if tail[length..].starts_with("\r\n") { 2 } else { 1 };
-        let line = (offset, &tail[..length]);
-        offset += length + ending;
-        Some(line)
-    })
 }
 
 /// `TILT=` at the beginning of a line, blanks and case ignored: what follows it. A label that has TILT in its

@@ -13,68 +13,29 @@
 //! V[nV]  H[nH]  candela[nH][nV]
 //! ```
 
-mod angles;
 mod body;
 mod commas;
 mod doubts;
 mod header;
 mod tilt;
 mod tokens;
+mod turned;
+pub mod write;
 
 pub use body::generation_type;
 
-use crate::error::{Diagnostic, Kind, Result};
-use crate::files::bytes::{check_length, read_capped};
-use crate::files::decode::decode;
+use crate::error::{Kind, Result};
 use crate::files::excerpt::quoted;
-use crate::files::kinds::{Use, instead};
 use crate::photometry::Photometry;
 use body::Reader;
 use header::{Header, has_tilt_line, read_header};
-use std::path::Path;
 use std::rc::Rc;
-
-/// Larger files are refused: the largest real one has 1.3 MB.
-pub const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// Gives the bytes of the tilt file of this name, which has no folder.
 pub type TiltFile<'a> = &'a mut dyn FnMut(&str) -> Result<Rc<[u8]>>;
 
-/// Reads a photometric file; a tilt file is looked for beside it.
-///
-/// # Errors
-/// [`Kind::Io`] when it cannot be read, `Kind::Limit` beyond `MAX_FILE_BYTES`, and those of [`parse`].
-pub fn read(path: impl AsRef<Path>) -> Result<Photometry> {
-    let path = path.as_ref();
-    let bytes = read_capped(path, MAX_FILE_BYTES).map_err(|d| d.in_file(path))?;
-    parse_with(&bytes, &path.display().to_string(), &mut |tilt| {
-        Ok(read_capped(&path.with_file_name(tilt), MAX_FILE_BYTES)?.into())
-    })
-}
-
-/// Reads the bytes of a photometric file; `name` stands in messages. A tilt file is not looked for.
-///
-/// # Errors
-/// [`Kind::Syntax`], [`Kind::Missing`], [`Kind::Range`] or [`Kind::Limit`] with file, line and column.
-pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
-    parse_with(bytes, name, &mut |_| {
-        Err(Diagnostic::new(Kind::Unavailable, "no folder to look in", "a file beside it"))
-    })
-}
-
-/// The same where tilt files can be had.
-pub fn parse_with(bytes: &[u8], name: &str, tilt: TiltFile<'_>) -> Result<Photometry> {
-    check_length(bytes, MAX_FILE_BYTES).map_err(|d| d.in_file(name))?;
-    let mut photometry = parse_text(&decode(bytes), tilt).map_err(|d| {
-        let other = instead(bytes, Use::Photometric, "an IES LM-63 file (.ies)", name);
-        other.unwrap_or(d).in_file(name)
-    })?;
-    photometry.file = name.to_owned();
-    photometry.warnings = photometry.warnings.into_iter().map(|d| d.in_file(name)).collect();
-    Ok(photometry)
-}
-
-fn parse_text(text: &str, tilt_file: TiltFile<'_>) -> Result<Photometry> {
+/// Reads the text of a file; messages have line and column, and no file.
+pub(super) fn parse_text(text: &str, tilt_file: TiltFile<'_>) -> Result<Photometry> {
     let header = read_header(text)?;
     let (body, has_tilt_table) = (header.body, header.tilt.0.eq_ignore_ascii_case("INCLUDE"));
     let read = parse_body(text, header, tilt_file);

@@ -1,9 +1,11 @@
 //! Every quirk on a small file of its own.
 
+use crate::error::Diagnostic;
 use crate::files::lm63::*;
+use crate::files::photometric::{parse, read};
 use crate::photometry::opening::OpeningShape;
 use crate::photometry::web::Symmetry;
-use crate::photometry::{PhotometricType, Revision, Summary, Tilt, TiltTable};
+use crate::photometry::{Format, PhotometricType, Revision, Summary, Tilt, TiltTable};
 
 /// A small file in parts, so that each test changes one of them.
 #[derive(Clone)]
@@ -84,7 +86,10 @@ fn at(error: &Diagnostic) -> (Kind, usize, usize) {
 fn a_plain_file_reads_without_warnings() {
     let p = SMALL.read();
     assert_eq!(p.warnings, []);
-    assert_eq!((p.revision, &p.tilt, p.lamps, p.lumens_per_lamp), (Revision::Y2002, &Tilt::None, 1.0, None));
+    assert_eq!(
+        (p.format, &p.tilt, p.lamps, p.lumens_per_lamp),
+        (Format::Lm63(Revision::Y2002), &Tilt::None, 1.0, None)
+    );
     assert_eq!((p.multiplier, p.ballast_factor, p.field12, p.input_watts), (1.0, 1.0, 1.0, 10.0));
     assert_eq!(p.web.photometric_type, PhotometricType::C);
     assert_eq!(
@@ -154,10 +159,14 @@ fn the_multiplier_scales_and_zero_is_dark_with_a_warning() {
 }
 
 #[test]
-fn tilt_is_read_and_never_applied() {
+fn tilt_is_read_and_is_no_part_of_the_table() {
     let p = Small { tilt: " Tilt = Include\n1\n3\n0 45 90\n1 .9 .8", ..SMALL }.read();
     let table = TiltTable { geometry: 1, angles_deg: vec![0.0, 45.0, 90.0], factors: vec![1.0, 0.9, 0.8] };
     assert_eq!((p.tilt, p.web, p.warnings.len()), (Tilt::Include(table.clone()), SMALL.read().web, 0));
+    assert_eq!(p_factor(&Small { tilt: "TILT=INCLUDE\n1\n2\n0 90\n.5 1", ..SMALL }), (0.5, 0.75));
+    Small { tilt: "TILT=INCLUDE\n1\n2\n0 90\n.5 1", ..SMALL }.warns_of("tilt factor .5 at 0 degrees");
+    let below = Small { tilt: "TILT=INCLUDE\n1\n2\n0 90\n1 -.5", ..SMALL };
+    assert_eq!(at(&below.refused()), (Kind::Range, 7, 3));
     let missing = Small { tilt: "TILT=FILE lamp.tlt", ..SMALL };
     assert_eq!(missing.read().tilt, Tilt::File { name: "lamp.tlt".into(), table: None });
     missing.warns_of("lamp.tlt");
@@ -173,6 +182,12 @@ fn tilt_is_read_and_never_applied() {
     assert_eq!(p.tilt, Tilt::File { name: "C:\\LAMPS\\lamp.tlt".into(), table: Some(table) });
     assert_eq!((p.file, p.warnings.len()), (path.display().to_string(), 0));
     assert_eq!(read(folder.path().join("none.ies")).unwrap_err().kind(), Kind::Io);
+}
+
+/// The factor of a small file that is not tilted, and at 45 degrees.
+fn p_factor(small: &Small<'_>) -> (f64, f64) {
+    let p = small.read();
+    (p.factor(), p.factor_at_tilt(45.0).unwrap())
 }
 
 #[test]

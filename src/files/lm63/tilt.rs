@@ -1,8 +1,10 @@
 //! What TILT= says: nothing, a table that follows, or the name of a file.
 
 use super::TiltFile;
-use super::body::{Reader, values};
+use super::body::Reader;
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::candela::checks::MAX_FACTOR;
+use crate::files::candela::number::values;
 use crate::files::decode::decode;
 use crate::files::excerpt::quoted;
 use crate::photometry::{Tilt, TiltTable};
@@ -37,7 +39,7 @@ pub(super) fn read(
     };
     let table = read_tilt_file(name, tilt_file).map_err(|d| {
         let found = format!("tilt file {}", quoted(name));
-        let hint = format!("tilt factors are not applied anyway; {d}");
+        let hint = format!("its factors are taken as 1; {d}");
         reader.warn(offset, d.kind(), &found, "a readable tilt file", &hint);
     });
     Ok(Tilt::File { name: name.to_owned(), table: table.ok() })
@@ -64,10 +66,20 @@ fn table(reader: &mut Reader<'_>) -> Result<TiltTable> {
     if let Some(pair) = falling.next() {
         return reader.refuse(&pair[1], Kind::Range, "tilt angle", "angles in strictly increasing order");
     }
+    if let Some(bad) = factors.iter().find(|n| !(0.0..=MAX_FACTOR).contains(&n.value)) {
+        let required = format!("a factor between 0 and {MAX_FACTOR}");
+        return reader.refuse(bad, Kind::Range, "tilt factor", &required);
+    }
     let upright = angles.iter().zip(&factors).find(|(angle, _)| angle.value == 0.0);
     if let Some((_, factor)) = upright.filter(|(_, factor)| factor.value != 1.0) {
         let found = format!("tilt factor {} at 0 degrees", factor.text);
-        reader.warn(factor.offset, Kind::Range, &found, "1 at 0 degrees", "tilt factors are not applied");
+        reader.warn(
+            factor.offset,
+            Kind::Range,
+            &found,
+            "1 at 0 degrees",
+            "it is a factor of what a lamp emits that is not tilted",
+        );
     }
     Ok(TiltTable { geometry, angles_deg: values(&angles), factors: values(&factors) })
 }

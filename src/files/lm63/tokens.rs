@@ -4,19 +4,8 @@
 //! tabs and commas all separate. A token is a decimal number or it is refused, with its place.
 
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::candela::number::{Number, is_decimal};
 use crate::files::excerpt::{line_column, quoted};
-use nom::branch::alt;
-use nom::character::complete::{char, digit0, digit1, one_of};
-use nom::combinator::{all_consuming, opt, recognize};
-use nom::{IResult, Parser};
-
-/// A number, its text and the byte where it begins.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Number<'a> {
-    pub value: f64,
-    pub text: &'a str,
-    pub offset: usize,
-}
 
 /// Position in a text of numbers.
 #[derive(Debug, Clone, Copy)]
@@ -28,14 +17,6 @@ pub(crate) struct Tokens<'a> {
 
 fn is_separator(c: char) -> bool {
     c.is_whitespace() || c == ',' || c == '\0'
-}
-
-/// `-12`, `.5`, `3.`, `1.4E+0010`; neither `nan`, `inf` nor a Fortran `D` exponent.
-fn decimal(input: &str) -> IResult<&str, &str> {
-    let whole = recognize((digit1, opt((char('.'), digit0))));
-    let fraction = recognize((char('.'), digit1));
-    let exponent = (one_of("eE"), opt(one_of("+-")), digit1);
-    recognize((opt(one_of("+-")), alt((whole, fraction)), opt(exponent))).parse(input)
 }
 
 impl<'a> Tokens<'a> {
@@ -66,7 +47,7 @@ impl<'a> Tokens<'a> {
             let missing = Diagnostic::new(Kind::Missing, "the end of the file", required());
             return Err(self.end_of_numbers(missing));
         };
-        let is_decimal = all_consuming(decimal).parse(found).is_ok();
+        let is_decimal = is_decimal(found);
         match found.parse::<f64>() {
             Ok(value) if is_decimal && value.is_finite() => {
                 self.offset += found.len();

@@ -98,6 +98,8 @@ mod tests {
             SCENE.replace("0.5", "\"0.5\""),
             SCENE.replace("reflectance = 0.5", "reflectance = 0.5\ncamera = 1"),
             SCENE.replace("seed", "photons"),
+            SCENE.replace("file =", "lamp_set = 2\nfile ="),
+            SCENE.replace("file =", "tilt_deg = 2\nfile ="),
         ] {
             assert_ne!(form(&other), form(SCENE), "{other}");
         }

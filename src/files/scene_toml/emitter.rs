@@ -12,9 +12,12 @@ use crate::emitter::colour::{CCT_K, CHANNEL};
 use crate::emitter::{
     AimFrame, AreaLight, Beam, BeamSection, Colour, Disc, Emitter, FLUX, Isotropic, Panel, Photometric,
 };
-use crate::error::{Diagnostic, Kind};
+use crate::error::{Diagnostic, Kind, Place};
+use crate::files::eulumdat::MAX_LAMP_SETS;
 use crate::files::suggest;
 use crate::geometry::{COORDINATE, LENGTH};
+use crate::photometry::Photometry;
+use crate::photometry::tilt::TILT_DEG;
 
 /// What makes an emitter of its table, its position (m) and its flux (lm), where these are given and good.
 type Reader = fn(&mut Table<'_, '_>, &str, Option<DVec3>, Option<f64>) -> Option<Make<Emitter>>;
@@ -67,14 +70,63 @@ fn read_photometric(
     flux_lm: Option<f64>,
 ) -> Option<Make<Emitter>> {
     let file = table.path("file");
+    let lamp_set =
+        table.integer("lamp_set", 1, MAX_LAMP_SETS as u64, "the number of a lamp set of the file, from 1");
+    let lamp_set =
+        table.place_of("lamp_set").zip(lamp_set).map(|(place, n)| Placed { value: n as usize, place });
+    let tilt_deg = table.angle("tilt_deg", &TILT_DEG);
+    let tilt_deg = table.place_of("tilt_deg").zip(tilt_deg).map(|(place, value)| Placed { value, place });
     let frame = read_frame(table)?;
-    let (file, position, name) = (file?, position?, name.to_owned());
+    let (file, position, name, place) = (file?, position?, name.to_owned(), table.place());
     Some(Box::new(move |loader| {
-        let (photometry, _) = &*loader.photometry(&file)?;
+        let (photometry, _) = &*loader.photometry(&file, lamp_set.as_ref())?;
         loader.asked.count(What::Candela, &name, photometry.web.candela.len() as u64)?;
-        let emitter = Photometric::new(photometry, position, frame, flux_lm);
-        Ok(Emitter::Photometric(emitter.map_err(|e| Diagnostic::from(e).in_file(loader.path(&file)))?))
+        let emitter = match &tilt_deg {
+            Some(tilt) => Photometric::at_tilt(photometry, tilt.value, position, frame, flux_lm),
+            None => Photometric::new(photometry, position, frame, flux_lm),
+        };
+        let emitter = emitter.map_err(|e| match &tilt_deg {
+            Some(tilt) if e.what() == "tilt_deg" => {
+                Diagnostic::from(e).placed(Some(tilt.place)).in_file(&loader.name)
+            }
+            _ => Diagnostic::from(e).in_file(loader.path(&file)),
+        })?;
+        if let Some(doubt) = of_tilt(photometry, tilt_deg.as_ref(), flux_lm.is_some(), place) {
+            loader.warnings.push(doubt.in_file(&loader.name));
+        }
+        Ok(Emitter::Photometric(emitter))
     }))
+}
+
+/// What to say of a tilt table that nobody asks for, or whose factor changes nothing.
+fn of_tilt(
+    photometry: &Photometry,
+    tilt_deg: Option<&Placed<f64>>,
+    has_flux: bool,
+    place: Place,
+) -> Option<Diagnostic> {
+    let table = photometry.tilt_table()?;
+    let (low, high) = table.factor_range();
+    match tilt_deg {
+        Some(tilt) if has_flux => {
+            let d = Diagnostic::new(Kind::Range, "tilt_deg beside flux_lm", "one of them");
+            Some(
+                d.placed(Some(tilt.place))
+                    .hint("flux_lm is what the lamp emits: the tilt's factor changes nothing"),
+            )
+        }
+        None if !has_flux && (low, high) != (1.0, 1.0) => {
+            let found =
+                format!("a lamp with a tilt table: factors {low} to {high} at {} degrees", table.range());
+            let taken = match photometry.untilted_factor() {
+                Some(factor) => format!("0 is taken: a factor of {factor}"),
+                None => "the table does not reach 0 degrees: a factor of 1 is taken".to_owned(),
+            };
+            let required = "tilt_deg, the tilt at which it is mounted";
+            Some(Diagnostic::new(Kind::Missing, found, required).placed(Some(place)).hint(taken))
+        }
+        _ => None,
+    }
 }
 
 /// Position (m) and flux (lm), where both are good.

@@ -10,7 +10,7 @@ use super::table::Placed;
 use crate::error::{Diagnostic, Result};
 use crate::files::bytes::Files;
 use crate::files::obj::{Checked, check_obj};
-use crate::files::{bsdf, lm63};
+use crate::files::{bsdf, photometric};
 use crate::photometry::Photometry;
 use crate::scattering::ScatterTable;
 use crate::scene::steps::Steps;
@@ -40,15 +40,15 @@ pub(crate) struct Loader {
     pub steps: Option<Steps>,
     /// What its parts ask for together.
     pub asked: Asked,
-    /// Photometric files, with the tilt files that they name.
-    lamps: Known<(Photometry, Vec<String>)>,
+    /// Photometric files with one of their lamp sets, and the tilt files that they name.
+    lamps: HashMap<(usize, Option<usize>), Result<Rc<(Photometry, Vec<String>)>>>,
     tables: Known<ScatterTable>,
     meshes: Known<Checked>,
 }
 
 impl Loader {
     pub fn new(name: String, files: Files, asked: Asked) -> Self {
-        let (lamps, tables, meshes) = (Known::new(), Known::new(), Known::new());
+        let (lamps, tables, meshes) = (HashMap::new(), Known::new(), Known::new());
         Self { name, files, warnings: Vec::new(), steps: None, asked, lamps, tables, meshes }
     }
 
@@ -72,28 +72,45 @@ impl Loader {
         self.files.look(&file.value).map_err(|e| self.at_name(file, e))
     }
 
-    /// A photometric file; a tilt file is looked for beside it. What is odd about it is told of the first lamp that names it.
-    pub fn photometry(&mut self, file: &Placed<String>) -> Result<Rc<(Photometry, Vec<String>)>> {
+    /// A photometric file with this lamp set; a tilt file is looked for beside it. What is odd about it is told of the first lamp
+    /// that names it.
+    pub fn photometry(
+        &mut self,
+        file: &Placed<String>,
+        lamp_set: Option<&Placed<usize>>,
+    ) -> Result<Rc<(Photometry, Vec<String>)>> {
         let (number, _) = self.look(file)?;
         let bytes = self.bytes(file)?;
-        if let Some(known) = self.lamps.get(&number) {
-            let known = known.clone()?;
+        let key = (number, lamp_set.map(|set| set.value));
+        // An error of no file is one of the choice.
+        let scene = self.name.clone();
+        let at_choice = |e: Diagnostic| match e.file() {
+            Some(_) => e,
+            None => e.placed(lamp_set.map(|set| set.place)).in_file(&scene),
+        };
+        if let Some(known) = self.lamps.get(&key) {
+            let known = known.clone().map_err(at_choice)?;
             // A lamp's tilt file is a file of that lamp, too.
             known.1.iter().try_for_each(|tilt| self.files.load(tilt).map(drop))?;
             return Ok(known);
         }
         let name = self.path(file).display().to_string();
         let (folder, files, mut tilts) = (PathBuf::from(&file.value), &mut self.files, Vec::new());
-        let read = lm63::parse_with(&bytes, &name, &mut |tilt| {
+        let read = photometric::parse_with(&bytes, &name, key.1, &mut |tilt| {
             let name = folder.with_file_name(tilt).to_string_lossy().into_owned();
             let bytes = files.load(&name)?;
             tilts.push(name);
             Ok(bytes)
         });
         let read = read.map(|photometry| Rc::new((photometry, tilts)));
-        self.warnings.extend(read.iter().flat_map(|read| read.0.warnings.iter().cloned()));
-        self.lamps.insert(number, read.clone());
-        read
+        // Two lamp sets of one file have most of its oddities in common.
+        for warning in read.iter().flat_map(|read| &read.0.warnings) {
+            if !self.warnings.contains(warning) {
+                self.warnings.push(warning.clone());
+            }
+        }
+        self.lamps.insert(key, read.clone());
+        read.map_err(at_choice)
     }
 
     /// A scattering table.

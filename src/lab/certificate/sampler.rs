@@ -118,13 +118,13 @@ mod tests {
     use super::*;
     use crate::emitter::photometric::grid_axes;
     use crate::emitter::{AimFrame, Emits, Emitter, Emitters, Photometric};
-    use crate::files::lm63;
+    use crate::files::photometric;
     use crate::sequence::owen::OwenPoints;
 
     #[test]
     fn draws_are_the_directions_of_photons() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/ies/wavy_glass.ies");
-        let photometry = lm63::read(file).unwrap();
+        let photometry = photometric::read(file).unwrap();
         let up = DVec3::new(0.2, 0.1, 1.0);
         let frame = AimFrame::new(DVec3::new(0.3, -0.7, -0.5), Some(up)).unwrap();
         let axes = grid_axes(photometry.web.photometric_type, frame).unwrap();

@@ -80,3 +80,20 @@ fn a_polygon_covers_its_area() {
         assert!((ink(&canvas) - area).abs() <= 0.01 * area, "{} for {area}", ink(&canvas));
     }
 }
+
+#[test]
+fn a_region_has_the_area_within_its_loops_and_not_in_its_holes() {
+    let circle = |radius: f64| arc_points([40.3, 41.2], radius, [0.0, std::f64::consts::TAU]);
+    let mut canvas = Canvas::new(80, 80, Colour::WHITE);
+    canvas.region(&[circle(30.0), circle(12.5)], Colour::BLACK);
+    let expected = std::f64::consts::PI * (30.0 * 30.0 - 12.5 * 12.5);
+    assert!((ink(&canvas) / expected - 1.0).abs() < 2e-3, "{} of {expected}", ink(&canvas));
+    assert_eq!(pixel(&canvas, 40, 41), Colour::WHITE);
+    // Beyond the picture, and not finite: nothing.
+    canvas.region(&[vec![[-50.0, -50.0], [200.0, -50.0], [200.0, -10.0]]], Colour::BLACK);
+    canvas.region(&[vec![[0.0, 0.0], [f64::NAN, 50.0], [50.0, 0.0]], Vec::new()], Colour::BLACK);
+    assert!((ink(&canvas) / expected - 1.0).abs() < 2e-3);
+    let mut whole = Canvas::new(9, 7, Colour::WHITE);
+    whole.region(&[vec![[-5.0, -5.0], [20.0, -5.0], [20.0, 20.0], [-5.0, 20.0]]], Colour::BLACK);
+    assert!((ink(&whole) - 63.0).abs() < 1e-3);
+}

@@ -1,41 +1,8 @@
-//! Angles as programs write them: noise about multiples of 90, H of type C counted from -180.
+//! H of type C counted from -180, as some programs write it.
 
-use super::tokens::Number;
+use crate::files::candela::Said;
+use crate::files::candela::number::Number;
 use crate::photometry::PhotometricType;
-
-/// Angles nearer than this to a multiple of 90 degrees are taken for it: the ranges of the standard begin and end there,
-/// and what a range stands for hangs on its ends. (A little more than 0.001, since 180.001 - 180 is.)
-const NOISE_DEG: f64 = 1.000_001e-3;
-
-/// Something to say about a list of angles, at a byte.
-pub(super) struct Said {
-    pub offset: usize,
-    pub found: String,
-    pub required: String,
-    pub hint: String,
-}
-
-/// Puts angles within 1e-3 degrees of a multiple of 90 on it, unless the list has that multiple too; what to say of the first.
-pub(super) fn snap(name: &str, list: &mut [Number]) -> Option<Said> {
-    let mut said = None;
-    for i in 0..list.len() {
-        let number = list[i];
-        // Plus zero: of noise below 0 there is no -0 left.
-        let whole = (number.value / 90.0).round() * 90.0 + 0.0;
-        let off = (number.value - whole).abs();
-        if off == 0.0 || off > NOISE_DEG || list.iter().any(|n| n.value == whole) {
-            continue;
-        }
-        list[i].value = whole;
-        said = said.or(Some(Said {
-            offset: number.offset,
-            found: format!("{name} angle {}", number.text),
-            required: whole.to_string(),
-            hint: format!("taken for {whole} (angles within 0.001 degrees of a multiple of 90 are)"),
-        }));
-    }
-    said
-}
 
 /// Planes of type C that are counted from -180 to 180, in the order of 0..360: for each, the place in the file that it
 /// had, and its angle. Of -180 and 180, which are one plane, the latter; 0 closes the circle. `None` where no angle is
