@@ -113,7 +113,8 @@ impl FarFieldStatistics {
         let most = (0..table.candela.len())
             .fold(0, |best, i| if table.candela[i] > table.candela[best] { i } else { best });
         let (nodes, planes) = (&table.nodes, table.nodes.planes());
-        let widest = |pairs: &mut dyn Iterator<Item = f64>| pairs.fold(0.0, f64::max);
+        // Without the rounding of angles that are multiples of a step.
+        let widest = |pairs: &mut dyn Iterator<Item = f64>| (1e9 * pairs.fold(0.0, f64::max)).round() / 1e9;
         let widest_step_deg = [
             widest(&mut nodes.gamma_deg.windows(2).map(|pair| pair[1] - pair[0])),
             widest(&mut (0..planes).map(|plane| nodes.next_c_deg(plane) - nodes.c_deg[plane])),

@@ -301,7 +301,7 @@ symmetry = "rotational"
     assert!(serde_json::to_string(&s).unwrap().contains("\"flux_lm\":0.0"));
 }
 
-/// Two lamps of 30 and 10 cd/sr in halves: averaged to a symmetry they have not, what is averaged away is half of the difference.
+/// Averaged to a symmetry that it has not: what is averaged away has the size that quadrature says, whatever the noise.
 #[test]
 fn an_asymmetry_is_measured_whatever_the_noise() {
     let photometry = asymmetric();
@@ -316,7 +316,7 @@ fn an_asymmetry_is_measured_whatever_the_noise() {
         let s = FarFieldStatistics::new(&scene, &run(&scene, photons, 8), 0);
         (s.asymmetry.unwrap(), s.warnings(&scene.far_fields[0]).len(), s)
     };
-    // By quadrature: the norm of the table less its mean over C, over its norm, planes and mirrored planes likewise.
+    // By quadrature: the norm of the table less its mean over C, over that of the mean; planes and mirrored planes likewise.
     let value = |g: f64, c: f64| photometry.web.intensity_cd(g, c);
     let (mut all, mut mean_gone, mut mirror_gone) = (0.0, 0.0, 0.0);
     for i in 0..600 {
@@ -331,7 +331,7 @@ fn an_asymmetry_is_measured_whatever_the_noise() {
             mirror_gone += measure * (0.5 * (row[c as usize] - mirrored)).powi(2);
         }
     }
-    let expected = [mean_gone, mirror_gone].map(|gone: f64| (gone / all).sqrt());
+    let expected = [mean_gone, mirror_gone].map(|gone: f64| (gone / (all - gone)).sqrt());
     for (symmetry, expected) in ["rotational", "bilateral 90-270"].into_iter().zip(expected) {
         for photons in [1 << 14, 1 << 19] {
             let (asymmetry, warnings, s) = of(symmetry, photons);
@@ -465,7 +465,7 @@ fn what_cannot_be_is_refused_in_words() {
         ("", "without `axis`"),
         (
             "axis = [0, 0, 1]\nsymmetry = \"round\"",
-            "symmetry = \"round\"; required: \"none\", \"rotational\"",
+            "symmetry = \"round\"; required: none, rotational, quadrants",
         ),
         ("axis = [0, 0, 1]\nsurface = \"lens\"", "the unknown surface `lens`"),
         (
