@@ -114,7 +114,7 @@ fn steps(step: f64, end: f64, divided: f64) -> Option<Vec<f64>> {
     const FINEST_DEG: f64 = 0.01;
     let (count, parts) = ((end / step).round(), divided / step);
     let divides = step >= FINEST_DEG && (parts - parts.round()).abs() <= WHOLE * parts && parts >= 0.5;
-    divides.then(|| (0..=count as usize).map(|i| end * (i as f64 / count)).collect())
+    divides.then(|| (0..=count as usize).map(|i| end * i as f64 / count).collect())
 }
 
 fn rises(angles: &[f64]) -> bool {
