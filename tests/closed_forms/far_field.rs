@@ -102,7 +102,10 @@ fn read_back(scene: &Scene, outcome: &Outcome, s: &FarFieldStatistics) {
         let written = photometric_file(&export, format).unwrap();
         let read = photometric::parse(&written.bytes, "written").unwrap();
         assert_eq!(read.factor(), 1.0);
-        assert!(read.warnings.is_empty(), "{format:?}: {:?}", read.warnings);
+        // A beam that is narrow for the file's steps is one thing to tell.
+        let is_known = |warning: &&caustix::error::Diagnostic| warning.found().contains("of the trapezoid");
+        let others: Vec<_> = read.warnings.iter().filter(|w| !is_known(w)).collect();
+        assert!(others.is_empty(), "{format:?}: {others:?}");
         let planes = s.table.nodes.planes();
         for (at, found) in s.table.candela.iter().enumerate() {
             let (g, c) = (s.table.nodes.gamma_deg[at / planes], s.table.nodes.c_deg[at % planes]);
@@ -402,7 +405,7 @@ fn steps_are_chosen_by_what_the_light_shows() {
         let outcome = run(&scene, 1 << 12, 4);
         read_back(&scene, &outcome, &FarFieldStatistics::new(&scene, &outcome, 0));
     }
-    let (few, many) = (step("spot.ies", 1 << 12), step("spot.ies", 1 << 20));
+    let (few, many) = (step("spot.ies", 1 << 8), step("spot.ies", 1 << 20));
     assert!(many[0] < few[0] && many[0] <= 1.0, "{few:?} {many:?}");
     assert_eq!(many[1], 30.0, "a beam that is the same all round needs few planes");
 }
@@ -489,7 +492,7 @@ fn threads_change_no_bit() {
 #[test]
 fn a_collimator_becomes_a_file_that_gives_its_light() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, text) in make_lenses::files(0.35) {
+    for (name, text) in make_lenses::files(0.7) {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
     let text =

@@ -156,7 +156,10 @@ impl Levels<'_> {
                 }
                 let mut finer = at;
                 finer[angle] -= 1;
-                self.fit(finer, self.field.symmetry).energy() - here.energy() > here.noise()
+                // What chance alone would show no more often than once in some hundreds.
+                const ERRORS: f64 = 3.0;
+                let (gain, error) = self.fit(finer, self.field.symmetry).energy_beyond(&here);
+                gain > here.noise() && gain > ERRORS * error
             };
             let gains = [gains(0), gains(1)];
             if gains == [false; 2] {
