@@ -24,7 +24,8 @@ const LABEL_COLUMNS: usize = 254;
 /// Characters of a line of numbers: what all editions allow.
 const NUMBER_COLUMNS: usize = 130;
 
-/// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are written as 0.
+/// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are
+/// written as 0.
 pub fn write(export: &Export, edition: Edition) -> PhotometricFile {
     let mut notes = Vec::new();
     let web = stored(export.web(), &mut notes);
@@ -51,7 +52,8 @@ fn rows(web: &Web) -> impl Iterator<Item = &[f64]> {
     web.candela.chunks_exact(web.vertical_deg.len().max(1))
 }
 
-/// The table by the planes that these editions have: 0 alone, 0..90, 0..180, or the whole circle with both its ends.
+/// The table by the planes that these editions have: 0 alone, 0..90, 0..180, or the whole circle with both
+/// its ends.
 fn stored(web: &Web, notes: &mut Vec<String>) -> Web {
     let mut stored = match web.symmetry() {
         Symmetry::Rotational => Web { horizontal_deg: vec![0.0], ..web.clone() },
@@ -73,7 +75,8 @@ fn stored(web: &Web, notes: &mut Vec<String>) -> Web {
     stored
 }
 
-/// Number of lamps, and lumens of each: -1 in absolute photometry. A number that is not whole stands for one lamp.
+/// Number of lamps, and lumens of each: -1 in absolute photometry. A number that is not whole stands for one
+/// lamp.
 fn lamps(export: &Export) -> (f64, f64) {
     let lamps = if export.lamps >= 1.0 && export.lamps.fract() == 0.0 { export.lamps } else { 1.0 };
     (lamps, export.lamps_lm.map_or(-1.0, |lm| lm / lamps))
