@@ -147,10 +147,10 @@ impl Export {
         flux::trapezoid_lm(&self.web.full_grid())
     }
 
-    /// Text of the first label with this keyword (case ignored); `None` where it is blank.
+    /// Text of the first label with this keyword (case ignored) that is not blank.
     pub fn label(&self, keyword: &str) -> Option<&str> {
-        let label = self.labels.iter().find(|(key, _)| key.eq_ignore_ascii_case(keyword));
-        label.map(|(_, text)| text.trim()).filter(|text| !text.is_empty())
+        let labels = self.labels.iter().filter(|(key, _)| key.eq_ignore_ascii_case(keyword));
+        labels.map(|(_, text)| text.trim()).find(|text| !text.is_empty())
     }
 
     /// Scales table and lamps so that the flux (by the trapezoid) is this one, lm. The watts stay.
@@ -197,7 +197,8 @@ impl Export {
     /// # Errors
     /// [`Kind::Range`] for an angle beyond +-360 degrees.
     pub fn turn(&mut self, by_deg: f64) -> Result<()> {
-        if !(by_deg.abs() <= 360.0) {
+        let is_fit = by_deg.abs() <= 360.0;
+        if !is_fit {
             return Err(Diagnostic::new(
                 Kind::Range,
                 format!("{by_deg} degrees"),

@@ -105,5 +105,5 @@ pub fn klm(photometry: &Photometry, flux_lm: f64) -> Option<f64> {
         (None, LampFlux::Absolute) => flux_lm,
         (None, LampFlux::Unknown) => 0.0,
     };
-    (lm > 0.0).then(|| 1e-3 * lm)
+    (lm > 0.0).then_some(1e-3 * lm)
 }

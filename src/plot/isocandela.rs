@@ -65,7 +65,7 @@ enum Part {
 
 impl Part {
     /// V of type C as an angle from the axis of the half space, and the other way round.
-    fn from_axis(self, angle_deg: f64) -> f64 {
+    fn angle_from_axis(self, angle_deg: f64) -> f64 {
         if self == Self::Above { 180.0 - angle_deg } else { angle_deg }
     }
 }
@@ -82,7 +82,7 @@ impl<'a> Chart<'a> {
     /// A half space of type C; `None` where it is dark.
     fn disc(web: &'a Web, part: Part, max: f64) -> Option<Self> {
         let n_v = web.vertical_deg.len();
-        let angle = |v: f64| part.from_axis(v);
+        let angle = |v: f64| part.angle_from_axis(v);
         let is_lit =
             (0..web.candela.len()).any(|i| web.candela[i] > 0.0 && angle(web.vertical_deg[i % n_v]) < 90.0);
         let widest =
@@ -112,7 +112,7 @@ impl<'a> Chart<'a> {
             return self.web.intensity_cd(y, x);
         }
         let angle = libm::hypot(x, y).min(90.0);
-        self.web.intensity_cd(self.part.from_axis(angle), libm::atan2(y, x) * (360.0 / TAU))
+        self.web.intensity_cd(self.part.angle_from_axis(angle), libm::atan2(y, x) * (360.0 / TAU))
     }
 
     /// Draws it below `y`; where it ends.
@@ -208,7 +208,7 @@ impl<'a> Chart<'a> {
         }
         for ring in 1..=3 {
             let angle = f64::from(ring) * step;
-            let label = format!("{}\u{b0}", digits(self.part.from_axis(angle)));
+            let label = format!("{}\u{b0}", digits(self.part.angle_from_axis(angle)));
             // Half way between two rays, within its ring.
             boxed(shapes, at(angle - 0.055 * reach, 285.0), &label);
         }
@@ -240,7 +240,7 @@ impl<'a> Chart<'a> {
     fn mark_maximum(&self, shapes: &mut Vec<Shape>, place: impl Fn([f64; 2]) -> [f64; 2]) {
         let max = self.web.max_intensity();
         let at = if self.is_disc() {
-            let angle = self.part.from_axis(max.vertical_deg);
+            let angle = self.part.angle_from_axis(max.vertical_deg);
             let c = max.horizontal_deg * (TAU / 360.0);
             [angle * libm::cos(c), angle * libm::sin(c)]
         } else {

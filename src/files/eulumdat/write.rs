@@ -21,7 +21,7 @@ const LAMP_WORDS: [usize; 3] = [24, 16, 6];
 pub fn write(export: &Export) -> Result<PhotometricFile> {
     let flux_lm = export.flux_lm();
     let lamps_lm = rounded(export.lamps_lm.unwrap_or(flux_lm));
-    if !(lamps_lm > 0.0) {
+    if lamps_lm.is_nan() || lamps_lm <= 0.0 {
         let required = "some light, or lamps with lumens: EULUMDAT has candela per 1000 lm of them";
         return Err(Diagnostic::new(Kind::Range, "a flux of 0 lm", required));
     }
