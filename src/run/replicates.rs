@@ -90,7 +90,7 @@ pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
 fn counters(scene: &Scene, plan: &Plan) -> u64 {
     let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
     let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
-    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.len() as u64).sum();
+    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.count() as u64).sum();
     (cells + nodes).saturating_mul(u64::from(plan.replicates()))
 }
 
@@ -99,7 +99,7 @@ fn counters(scene: &Scene, plan: &Plan) -> u64 {
 /// # Errors
 /// More than 2^27 nodes.
 pub(super) fn check_far_fields(scene: &Scene, plan: &Plan) -> Result<()> {
-    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.len() as u64).sum();
+    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.count() as u64).sum();
     let all = nodes.saturating_mul(u64::from(plan.replicates()));
     if all <= MOST_COUNTERS {
         return Ok(());

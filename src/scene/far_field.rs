@@ -187,7 +187,7 @@ impl FarField {
             gamma_deg: if given[0] { fine.gamma_deg } else { nodes.gamma_deg },
             c_deg: if given[1] { fine.c_deg } else { nodes.c_deg },
         };
-        if nodes.len() > MOST_NODES {
+        if nodes.count() > MOST_NODES {
             let (rows, planes) = (nodes.gamma_deg.len(), nodes.planes());
             let found =
                 format!("far field \"{}\" of {rows} x {planes} nodes, half steps included", spec.name);
