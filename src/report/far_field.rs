@@ -42,7 +42,8 @@ impl Measured {
 
     /// With its error, without the share that this is.
     fn text(self, unit: &str) -> String {
-        let text = with_error(self.value, self.standard_error, unit);
+        // Of replicates that all agree, such as on an angle that is cut off, there is no error to tell.
+        let text = with_error(self.value, self.standard_error.filter(|error| *error > 0.0), unit);
         text.rsplit_once(" (").map_or(text.clone(), |(text, _)| text.to_owned())
     }
 }
@@ -72,9 +73,9 @@ pub struct FarFieldStatistics {
     pub widest_step_deg: [f64; 2],
     /// Symmetry that it was averaged to.
     pub symmetry: &'static str,
-    /// Greatest intensity, cd.
+    /// Greatest intensity, cd: of a noisy table less than the greatest of its values, which noise chose.
     pub max_candela: Measured,
-    /// Where: gamma and C, degrees.
+    /// Where the greatest value of the table is: gamma and C, degrees.
     pub max_at_deg: [f64; 2],
     /// Full angles at half of the greatest intensity of C0-C180 and of C90-C270; absent in the dark.
     pub beam_angle_deg: [Option<Measured>; 2],
@@ -110,9 +111,7 @@ impl FarFieldStatistics {
             Some(Measured { value, standard_error: error(&|web| of(web, share)) })
         };
         let angles = |share: f64| [angle(lobe_angle_deg, share), angle(lobe_angle_across_deg, share)];
-        // Planes that a symmetry makes equal are so but for rounding.
-        let larger = |best: usize, i: usize| table.candela[i] > table.candela[best] * (1.0 + 1e-12);
-        let most = (0..table.candela.len()).fold(0, |best, i| if larger(best, i) { i } else { best });
+        let (greatest, greatest_error, most) = table.maximum();
         let (nodes, planes) = (&table.nodes, table.nodes.planes());
         // Without the rounding of angles that are multiples of a step.
         let widest = |pairs: &mut dyn Iterator<Item = f64>| (1e9 * pairs.fold(0.0, f64::max)).round() / 1e9;
@@ -132,10 +131,7 @@ impl FarFieldStatistics {
             c_planes: planes,
             widest_step_deg,
             symmetry: field.symmetry.name(),
-            max_candela: Measured {
-                value: table.candela[most],
-                standard_error: table.standard_error_cd.as_ref().map(|errors| errors[most]),
-            },
+            max_candela: Measured { value: greatest, standard_error: greatest_error },
             max_at_deg: [nodes.gamma_deg[most / planes], nodes.c_deg[most % planes]],
             beam_angle_deg: angles(BEAM_SHARE),
             field_angle_deg: angles(FIELD_SHARE),

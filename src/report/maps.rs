@@ -89,18 +89,21 @@ pub fn write_csv(
     write_atomically(path, |out| match receiver.cells {
         Cells::Faces { count } => {
             writeln!(out, "face,x_m,y_m,z_m,area_m2,{NUMBERS}")?;
+            let mut decimals = Decimals::new();
             for face in 0..count {
                 let Some([a, b, c]) = shape.triangle(face) else { continue };
                 let m = (a + b + c) / 3.0;
                 write!(out, "{face},")?;
                 for value in [m.x, m.y, m.z, receiver.area_m2(face)] {
-                    write_number(out, value)?;
+                    decimals.write(out, value)?;
                 }
-                numbers.write(out, face)?;
+                numbers.write(out, &mut decimals, face)?;
             }
             Ok(())
         }
-        Cells::Grid { nu, nv } => write_cells(out, shape, [nu, nv], |cell| middle([nu, nv], cell), &numbers),
+        Cells::Grid { nu, nv } => {
+            write_cells(out, shape, receiver.cells.len(), |cell| middle([nu, nv], cell), &numbers)
+        }
     })?;
     Ok(true)
 }
@@ -122,8 +125,7 @@ pub fn write_grid_csv(
         standard_error_lx: &of.standard_error_lx,
         hits: &of.hits,
     };
-    let counts = [grid.nu, grid.nv];
-    write_atomically(path, |out| write_cells(out, shape, counts, |cell| grid.middle(cell), &numbers))?;
+    write_atomically(path, |out| write_cells(out, shape, grid.cells(), |cell| grid.middle(cell), &numbers))?;
     Ok(true)
 }
 
@@ -143,11 +145,11 @@ impl<'a> Numbers<'a> {
     }
 
     /// The end of a cell's row.
-    fn write(&self, out: &mut impl Write, cell: usize) -> io::Result<()> {
-        write_number(out, self.illuminance_lx[cell])?;
+    fn write(&self, out: &mut impl Write, decimals: &mut Decimals, cell: usize) -> io::Result<()> {
+        decimals.write(out, self.illuminance_lx[cell])?;
         let error = self.standard_error_lx[cell];
         if error.is_finite() {
-            write_number(out, error)?
+            decimals.write(out, error)?
         } else {
             out.write_all(b",")?
         }
@@ -156,41 +158,65 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The shortest decimal that reads back as the same number, and a comma. By serde_json, several times as fast as
-/// the standard library: a map of 512 x 512 cells writes 1.3 million of them.
-fn write_number(out: &mut impl Write, value: f64) -> io::Result<()> {
-    serde_json::to_writer(&mut *out, &value)?;
-    out.write_all(b",")
+/// The shortest decimals that read back as the same numbers, each with a comma, by serde_json, which is several times as
+/// fast as the standard library. Lately told ones are remembered: rows and columns of a map repeat its coordinates, and
+/// cells of few hits their values.
+struct Decimals {
+    told: Vec<Told>,
 }
 
-/// The cells of a grid of `[nu, nv]`, row by row from the top left; `middle` gives the (u, v) of one.
+#[derive(Clone, Copy)]
+struct Told {
+    bits: u64,
+    length: u8,
+    text: [u8; LONGEST],
+}
+
+/// Characters of the longest number, and a comma.
+const LONGEST: usize = 32;
+/// Numbers remembered, by their hash.
+const REMEMBERED_BITS: u32 = 12;
+
+impl Decimals {
+    fn new() -> Self {
+        // The first look at a place finds nothing there.
+        Self { told: vec![Told { bits: 0, length: 0, text: [0; LONGEST] }; 1 << REMEMBERED_BITS] }
+    }
+
+    fn write(&mut self, out: &mut impl Write, value: f64) -> io::Result<()> {
+        /// 2^64 over the golden ratio (Knuth, "The Art of Computer Programming", 6.4).
+        const SPREAD: u64 = 0x9e37_79b9_7f4a_7c15;
+        let bits = value.to_bits();
+        let place = bits.wrapping_mul(SPREAD) >> (u64::BITS - REMEMBERED_BITS);
+        let told = &mut self.told[place as usize];
+        if told.bits != bits || told.length == 0 {
+            let mut rest = &mut told.text[..];
+            serde_json::to_writer(&mut rest, &value)?;
+            rest.write_all(b",")?;
+            let left = rest.len();
+            (told.bits, told.length) = (bits, (LONGEST - left) as u8);
+        }
+        out.write_all(&told.text[..told.length.into()])
+    }
+}
+
+/// The cells of a grid, row by row from the top left; `middle` gives the (u, v) of one.
 fn write_cells(
     out: &mut impl Write,
     shape: &Shape,
-    [nu, nv]: [u32; 2],
+    cells: usize,
     middle: impl Fn(usize) -> (f64, f64),
     numbers: &Numbers<'_>,
 ) -> io::Result<()> {
     writeln!(out, "x,y,z,u,v,{NUMBERS}")?;
-    let text = |value: f64| {
-        let mut text = Vec::new();
-        write_number(&mut text, value).map(|()| text)
-    };
-    // A column's u and a row's v are turned into text once.
-    let us = (0..nu as usize).map(|column| text(middle(column).0)).collect::<io::Result<Vec<_>>>()?;
-    for row in 0..nv as usize {
-        let first = row * nu as usize;
-        let v = text(middle(first).1)?;
-        for (cell, u) in (first..).zip(&us) {
-            let (at_u, at_v) = middle(cell);
-            let Some(m) = shape.at(at_u, at_v) else { continue };
-            for value in [m.x, m.y, m.z] {
-                write_number(out, value)?;
-            }
-            out.write_all(u)?;
-            out.write_all(&v)?;
-            numbers.write(out, cell)?;
+    let mut decimals = Decimals::new();
+    for cell in 0..cells {
+        let (u, v) = middle(cell);
+        let Some(m) = shape.at(u, v) else { continue };
+        for value in [m.x, m.y, m.z, u, v] {
+            decimals.write(out, value)?;
         }
+        numbers.write(out, &mut decimals, cell)?;
     }
     Ok(())
 }

@@ -270,6 +270,33 @@ fn other_types_become_type_c() {
     }
 }
 
+/// 1 cd everywhere: the greatest of 400 noisy values is far more, the maximum that is told is not.
+#[test]
+fn the_maximum_is_not_the_noise() {
+    let text = "[[emitter]]\ntype = \"isotropic\"\nflux_lm = 12.566370614359172\nposition = [0, 0, 0]\n\
+                [[far_field]]\nname = \"far\"\naxis = [0, 0, -1]\ngamma_deg = 10\nc_deg = 15\n";
+    let scene = scene(text);
+    let (mut sum, mut square, mut errors) = (0.0, 0.0, 0.0);
+    let seeds = 20;
+    for seed in 1..=seeds {
+        let mut settings =
+            Settings { photons: Some(1 << 14), replicates: Some(8), seed, ..Settings::default() };
+        settings.algorithm.sequence = caustix::sequence::Sequence::Independent;
+        let plan = Plan::new(&settings).unwrap();
+        let outcome = trace(&scene, &plan, &AtomicBool::new(false), &|_| {}).unwrap();
+        let s = FarFieldStatistics::new(&scene, &outcome, 0);
+        assert!(s.table.candela.iter().copied().fold(0.0, f64::max) > 1.2);
+        let (value, error) = (s.max_candela.value, s.max_candela.standard_error.unwrap());
+        (sum, square, errors) = (sum + value, square + value * value, errors + error);
+    }
+    let n = seeds as f64;
+    let (mean, error) = (sum / n, errors / n);
+    assert!((mean - 1.0).abs() < 4.0 * error / n.sqrt(), "{mean} +- {}", error / n.sqrt());
+    // The error is that of a node: neither far less than the spread nor far more.
+    let spread = (square / n - mean * mean).sqrt();
+    assert!(spread < 1.5 * error && error < 3.0 * spread, "{spread} {error}");
+}
+
 /// A beam has one direction: all of its light is on the nodes there, exactly at a pole, at C = 360 and at gamma = 90 too.
 #[test]
 fn a_single_direction_is_exact() {

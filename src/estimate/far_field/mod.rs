@@ -281,6 +281,25 @@ pub fn jackknife_error(without_each: &[f64]) -> f64 {
 }
 
 impl Table {
+    /// The greatest intensity, its standard error (cd) and where it is. Noise chooses the greatest of many values, too, so the
+    /// first, third, ... replicate choose a node and the others value it, and the other way round; the mean of both is given.
+    pub fn maximum(&self) -> (f64, Option<f64>, usize) {
+        let greatest = |c: &[f64]| {
+            // Planes that a symmetry makes equal are so but for rounding.
+            (0..c.len()).fold(0, |best, i| if c[i] > c[best] + 1e-12 * c[best].abs() { i } else { best })
+        };
+        let at = greatest(&self.candela);
+        let Some(errors) = &self.standard_error_cd else { return (self.candela[at], None, at) };
+        let halves = [0, 1].map(|first| {
+            let half: Vec<_> = self.replicates.iter().skip(first).step_by(2).collect();
+            let mean = |i: usize| half.iter().map(|c| c[i]).sum::<f64>() / half.len() as f64;
+            (0..self.candela.len()).map(mean).collect::<Vec<f64>>()
+        });
+        let [a, b] = [greatest(&halves[0]), greatest(&halves[1])];
+        let value = 0.5 * (halves[1][a] + halves[0][b]);
+        (value.max(0.0), Some((0.5 * (errors[a] * errors[a] + errors[b] * errors[b])).sqrt()), at)
+    }
+
     /// The table without each of the replicates in turn, negative values among it.
     pub fn without_each(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
         let r = self.replicates.len() as f64;
