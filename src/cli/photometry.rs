@@ -88,8 +88,12 @@ fn convert(args: &PhotometryArgs, to: &str, photometry: &Photometry) -> Result<S
 
 /// A row for each file. Those that cannot be read are told, and cost no other.
 fn several(args: &PhotometryArgs, files: &[PathBuf]) -> Done {
-    let single =
-        [("--plot", args.plot.is_some()), ("--iso", args.iso.is_some()), ("--to", args.to.is_some())];
+    let single = [
+        ("--plot", args.plot.is_some()),
+        ("--iso", args.iso.is_some()),
+        ("--to", args.to.is_some()),
+        ("--per-klm", args.per_klm),
+    ];
     if let Some((option, _)) = single.iter().find(|(_, is_asked)| *is_asked) {
         let found = format!("{option} with {} files", files.len());
         return Err(Diagnostic::new(Kind::Range, found, format!("one file with {option}")).into());

@@ -102,8 +102,9 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     for (receiver, s) in scene.receivers.iter().zip(&statistics) {
         files.push(write_receiver(&mut set, &scene, &outcome, receiver, s));
     }
-    let far_fields: Vec<_> =
-        (0..scene.far_fields.len()).map(|i| FarFieldStatistics::new(&scene, &outcome, i)).collect();
+    let far_fields: Vec<_> = pool.install(|| {
+        (0..scene.far_fields.len()).map(|i| FarFieldStatistics::new(&scene, &outcome, i)).collect()
+    });
     let fields = scene.far_fields.iter().zip(&far_fields);
     let (far_field_files, of_far_fields): (Vec<_>, Vec<_>) =
         fields.map(|(field, s)| far_field::write(&mut set, &scene, &outcome, field, s)).unzip();
@@ -280,7 +281,7 @@ fn seen_again(args: &RenderArgs, map: &Path, scene: &Scene, plan: &Plan, started
     if !args.quiet {
         let (name, map) = (&scene.identity.name, map.display());
         print(&format!("scene      {name}\nphotons    those saved in {map}; "));
-        print("none were traced, so receivers have no maps\n");
+        print("none were traced, so receivers and far fields have no files\n");
         print(&report.camera.text());
         print(&results::written_to(folder, &written));
     }

@@ -7,13 +7,12 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::error::warning::{Severity, Warning};
 use crate::estimate::far_field::{Table, jackknife_error};
 use crate::files::atomic::write_atomically;
 use crate::files::exr::{Channel, Light, Value, floats, write_maps};
 use crate::photometry::beam::{BEAM_SHARE, FIELD_SHARE, lobe_angle_across_deg, lobe_angle_deg};
 use crate::photometry::export::{DataOrigin, Export};
-use crate::photometry::{PhotometricType, Web};
+use crate::photometry::{PhotometricType, Web, flux};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::scene::far_field::{FarField, Symmetry};
@@ -61,6 +60,8 @@ pub struct FarFieldStatistics {
     pub flux_lm: f64,
     /// Its standard error, lm.
     pub flux_standard_error_lm: Option<f64>,
+    /// Flux of the table as the lighting industry integrates it, lm: what other programs will say. It is bilinear here.
+    pub trapezoid_lm: f64,
     /// Flux that left in directions outside the table, lm.
     pub outside_lm: f64,
     /// All flux that left, inside and outside, over the flux of all emitters.
@@ -81,6 +82,9 @@ pub struct FarFieldStatistics {
     pub beam_angle_deg: [Option<Measured>; 2],
     /// The same at a tenth.
     pub field_angle_deg: [Option<Measured>; 2],
+    /// Why some of them are not given though there is light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angles_absent: Option<&'static str>,
     /// Of the table's norm (root mean square over the sphere): noise.
     pub noise: Option<f64>,
     /// Of its norm: what half the steps would show and these do not.
@@ -97,20 +101,15 @@ impl FarFieldStatistics {
     pub fn new(scene: &Scene, outcome: &Outcome, index: usize) -> Self {
         let field = &scene.far_fields[index];
         let table = outcome.far_field(scene, index);
-        let [seen, outside] = outcome.far_field_lm(index);
+        let [seen, inside, outside] = outcome.far_field_lm(index);
         let emitted_lm = scene.emitters.flux_lm();
         let web_of = |candela: &[f64]| web(&table, candela, field.symmetry);
         let web = web_of(&table.candela);
-        let without_each: Vec<Web> = table.without_each().map(|candela| web_of(&candela)).collect();
-        let error = |of: &dyn Fn(&Web) -> Option<f64>| {
-            let each: Option<Vec<f64>> = without_each.iter().map(of).collect();
-            each.filter(|each| each.len() > 1).map(|each| jackknife_error(&each))
-        };
-        let angle = |of: fn(&Web, f64) -> Option<f64>, share: f64| {
-            let value = of(&web, share)?;
-            Some(Measured { value, standard_error: error(&|web| of(web, share)) })
-        };
-        let angles = |share: f64| [angle(lobe_angle_deg, share), angle(lobe_angle_across_deg, share)];
+        let angles = Angles::new(&table, &web, web_of);
+        let [beam_angle_deg, field_angle_deg] = [BEAM_SHARE, FIELD_SHARE]
+            .map(|share| [angles.of(lobe_angle_deg, share), angles.of(lobe_angle_across_deg, share)]);
+        let is_noise =
+            [beam_angle_deg, field_angle_deg].concat().into_iter().any(|angle| angle == Err(Noise));
         let (greatest, greatest_error, most) = table.maximum();
         let (nodes, planes) = (&table.nodes, table.nodes.planes());
         // Without the rounding of angles that are multiples of a step.
@@ -120,8 +119,9 @@ impl FarFieldStatistics {
             widest(&mut (0..planes).map(|plane| nodes.next_c_deg(plane) - nodes.c_deg[plane])),
         ];
         Self {
-            flux_lm: seen.value - outside.value,
-            flux_standard_error_lm: seen.standard_error,
+            flux_lm: inside.value,
+            flux_standard_error_lm: inside.standard_error,
+            trapezoid_lm: flux::trapezoid_lm(&web.full_grid()),
             outside_lm: outside.value,
             efficiency: Measured {
                 value: seen.value / emitted_lm,
@@ -133,8 +133,9 @@ impl FarFieldStatistics {
             symmetry: field.symmetry.name(),
             max_candela: Measured { value: greatest, standard_error: greatest_error },
             max_at_deg: [nodes.gamma_deg[most / planes], nodes.c_deg[most % planes]],
-            beam_angle_deg: angles(BEAM_SHARE),
-            field_angle_deg: angles(FIELD_SHARE),
+            beam_angle_deg: beam_angle_deg.map(|angle| angle.unwrap_or(None)),
+            field_angle_deg: field_angle_deg.map(|angle| angle.unwrap_or(None)),
+            angles_absent: is_noise.then_some(NOISE),
             noise: table.noise,
             unresolved: table.unresolved.map(measured),
             asymmetry: table.asymmetry.map(measured),
@@ -143,74 +144,50 @@ impl FarFieldStatistics {
             table,
         }
     }
+}
 
-    /// What must be known beside the table.
-    pub fn warnings(&self, field: &FarField) -> Vec<Warning> {
-        /// Steps that miss more of the light than this make a table that is another light.
-        const UNRESOLVED: f64 = 0.02;
-        /// An asymmetry of more standard errors than this, and of more than a hundredth, is none of noise.
-        const ERRORS: f64 = 4.0;
-        const ASYMMETRY: f64 = 0.01;
-        let name = &field.name;
-        let percent = |share: f64| format!("{} %", rounded(100.0 * share, 2));
-        let tell = |code, message: String, share: f64, remedy: &str| Warning {
-            severity: Severity::Doubtful,
-            code,
-            message: format!("far field \"{name}\": {message}"),
-            surfaces: Vec::new(),
-            share: Some(share),
-            remedy: remedy.into(),
+/// An angle that noise may have made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Noise;
+
+/// Why angles are not given.
+const NOISE: &str = "noise: within two standard errors of its values the table has other angles";
+
+/// Beam and field angles of a table, and of it without each replicate.
+struct Angles<'a> {
+    web: &'a Web,
+    without_each: Vec<Web>,
+    /// With two standard errors less, and more, at every node.
+    bounds: Option<[Web; 2]>,
+}
+
+impl<'a> Angles<'a> {
+    fn new(table: &Table, web: &'a Web, web_of: impl Fn(&[f64]) -> Web) -> Self {
+        let moved = |errors: &[f64], by: f64| -> Vec<f64> {
+            table.candela.iter().zip(errors).map(|(c, error)| c + by * error).collect()
         };
-        let mut all = Vec::new();
-        let seen_lm = self.flux_lm + self.outside_lm;
-        if self.outside_lm > 0.0 {
-            let share = self.outside_lm / seen_lm;
-            let message = format!("{} of its light leaves in directions outside `gamma_deg`", percent(share));
-            all.push(tell(
-                "far-field-outside",
-                message,
-                share,
-                "angles up to 180 degrees, or what the luminaire lets out there kept in",
-            ));
+        let bounds = table.standard_error_cd.as_ref().map(|e| [-2.0, 2.0].map(|by| web_of(&moved(e, by))));
+        Self { web, without_each: table.without_each().map(|candela| web_of(&candela)).collect(), bounds }
+    }
+
+    /// A lobe's angle: none of a dark plane, and none where the bounds' angles are a tenth of it apart: noise of single nodes
+    /// cuts a lobe short, which the spread of replicates does not show.
+    fn of(
+        &self,
+        angle: fn(&Web, f64) -> Option<f64>,
+        share: f64,
+    ) -> std::result::Result<Option<Measured>, Noise> {
+        const APART: f64 = 0.1;
+        let Some(value) = angle(self.web, share) else { return Ok(None) };
+        let Some([low, high]) = &self.bounds else {
+            return Ok(Some(Measured { value, standard_error: None }));
+        };
+        let (Some(low), Some(high)) = (angle(low, share), angle(high, share)) else { return Err(Noise) };
+        if (high - low).abs() > APART * value || (high - value).abs() > APART * value {
+            return Err(Noise);
         }
-        if seen_lm == 0.0 {
-            let message =
-                "no light arrives in it, so that its files hold zeros and there is no EULUMDAT of it"
-                    .to_owned();
-            all.push(tell(
-                "far-field-dark",
-                message,
-                0.0,
-                "light that leaves the scene, or comes out of the front of its `surface`",
-            ));
-        }
-        let is_clear = |of: &Measured| of.standard_error.is_some_and(|error| of.value > ERRORS * error);
-        if let Some(missed) = self.unresolved.filter(|missed| missed.value > UNRESOLVED && is_clear(missed)) {
-            let [gamma, c] = self.widest_step_deg.map(|step| rounded(step, 3));
-            let part = percent(missed.value);
-            let message = format!(
-                "steps of {gamma} degrees in gamma and {c} in C do not follow {part} of the light (root mean square)"
-            );
-            all.push(tell(
-                "far-field-steps",
-                message,
-                missed.value,
-                "smaller steps, or none, so that they are chosen",
-            ));
-        }
-        if let Some(size) = self.asymmetry.filter(|size| size.value > ASYMMETRY && is_clear(size)) {
-            let (part, symmetry) = (percent(size.value), self.symmetry);
-            let message = format!(
-                "{part} of it (root mean square) is not as symmetry = \"{symmetry}\" says, and was averaged away"
-            );
-            all.push(tell(
-                "far-field-asymmetry",
-                message,
-                size.value,
-                "symmetry = \"none\", or an `axis` and `up` that are the light's",
-            ));
-        }
-        all
+        let each: Option<Vec<f64>> = self.without_each.iter().map(|web| angle(web, share)).collect();
+        Ok(Some(Measured { value, standard_error: Some(jackknife_error(&each.ok_or(Noise)?)) }))
     }
 }
 
@@ -239,7 +216,7 @@ pub fn text(field: &FarField, s: &FarFieldStatistics, files: &[String]) -> Strin
         {
             let degrees = |angle: Option<Measured>| match angle {
                 Some(angle) => angle.text("degrees"),
-                None => "none".into(),
+                None => if s.angles_absent.is_some() { "not known" } else { "none" }.into(),
             };
             writeln!(out, "  {label}  {} in C0-C180, {} in C90-C270", degrees(first), degrees(across))?;
         }

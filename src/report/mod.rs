@@ -10,6 +10,7 @@ pub mod unknown;
 pub mod attributes;
 pub mod maps;
 pub mod far_field;
+mod far_field_warnings;
 pub mod ply;
 pub mod vtp;
 pub mod picture;

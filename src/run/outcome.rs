@@ -250,10 +250,11 @@ impl Outcome {
         far_field::table(&scene.far_fields[field], &self.far_fields[field], self.photon_lm)
     }
 
-    /// What a far field saw in all, and what of it was outside its nodes, lm.
-    pub(crate) fn far_field_lm(&self, field: usize) -> [Estimate; 2] {
+    /// What a far field saw in all, what of it was inside its nodes, and what outside, lm.
+    pub(crate) fn far_field_lm(&self, field: usize) -> [Estimate; 3] {
         let sums = &self.far_fields[field];
-        [&sums.seen, &sums.outside].map(|by_replicate| {
+        let inside: Vec<u64> = sums.seen.iter().zip(&sums.outside).map(|(seen, out)| seen - out).collect();
+        [&sums.seen, &inside, &sums.outside].map(|by_replicate| {
             let (photons, error) = far_field::total(by_replicate);
             let standard_error = error.map(|error| error * self.photon_lm);
             Estimate { value: photons as f64 * self.photon_lm, standard_error }

@@ -19,11 +19,10 @@ use super::receiver::check_name;
 pub const MOST_NODES: usize = 1 << 22;
 
 /// What `gamma_deg` must be, in words.
-pub const GAMMA_REQUIRED: &str =
-    "a step that divides 90 degrees, or increasing angles that begin at 0 or 90 and end at 90 or 180";
+pub const GAMMA_REQUIRED: &str = "a step from 0.01 that divides 90 degrees, or angles that increase by 0.01 or more, begin at 0 or 90 and end at 90 or 180";
 /// What `c_deg` must be, in words.
-pub const C_REQUIRED: &str =
-    "a step that divides 360 degrees, or increasing angles that begin at 0 and end at or before 360";
+pub const C_REQUIRED: &str = "a step from 0.01 that divides 360 degrees, or angles that increase by 0.01 or more, begin at 0 and go round the circle: \
+     no 180 degrees without a plane (the planes that a `symmetry` makes are written, too)";
 const SYMMETRY_REQUIRED: &str =
     "planes C that the symmetry takes to planes C (0, 90, 180 and 270 among them, where it names them)";
 
@@ -82,7 +81,11 @@ impl FarFieldSpec {
             [step] if *step != 0.0 => steps(*step, 360.0, 360.0),
             list => Some(list.to_vec()),
         };
-        let is_good = |a: &[f64]| rises(a) && a[0] == 0.0 && a[a.len() - 1] <= 360.0;
+        let goes_round = |a: &[f64]| {
+            let gaps = a.windows(2).map(|pair| pair[1] - pair[0]).chain([360.0 - a[a.len() - 1]]);
+            a.len() < 3 || gaps.into_iter().all(|gap| gap < 180.0)
+        };
+        let is_good = |a: &[f64]| rises(a) && a[0] == 0.0 && a[a.len() - 1] <= 360.0 && goes_round(a);
         let mut angles = required("c_deg", c_deg, angles, is_good, C_REQUIRED)?;
         angles.retain(|c| *c < 360.0);
         self.c_deg = Some(angles);
@@ -107,19 +110,21 @@ impl FarFieldSpec {
     }
 }
 
+/// Finer steps make tables that nobody reads.
+const FINEST_DEG: f64 = 0.01;
+
 /// The multiples of a step from 0 to `end`, which is one of them, as `divided` is.
 fn steps(step: f64, end: f64, divided: f64) -> Option<Vec<f64>> {
     /// A step such as 0.1 is no dyadic number.
     const WHOLE: f64 = 1e-9;
-    /// Finer steps make tables that nobody reads.
-    const FINEST_DEG: f64 = 0.01;
     let (count, parts) = ((end / step).round(), divided / step);
     let divides = step >= FINEST_DEG && (parts - parts.round()).abs() <= WHOLE * parts && parts >= 0.5;
     divides.then(|| (0..=count as usize).map(|i| end * i as f64 / count).collect())
 }
 
 fn rises(angles: &[f64]) -> bool {
-    !angles.is_empty() && angles.windows(2).all(|pair| pair[0] < pair[1])
+    let is_step = |pair: &[f64]| pair[1] - pair[0] >= FINEST_DEG * (1.0 - 1e-9);
+    !angles.is_empty() && angles.windows(2).all(is_step)
 }
 
 fn required(

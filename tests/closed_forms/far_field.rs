@@ -297,6 +297,74 @@ fn the_maximum_is_not_the_noise() {
     assert!(spread < 1.5 * error && error < 3.0 * spread, "{spread} {error}");
 }
 
+/// Batwing at steps of 2 degrees, whose nodes beside the axis are tiny: the maximum is the wings', and angles are given only where
+/// noise has not made them. Those of the file: 1071.9 cd, 76.7 degrees across.
+#[test]
+fn a_noisy_table_tells_no_angle_that_noise_made() {
+    let batwing = photometric::read(data::own_file("batwing.ies")).unwrap();
+    let exact = caustix::photometry::beam::lobe_angle_across_deg(&batwing.web, 0.5).unwrap();
+    let (mut told, mut unknown) = (0, 0);
+    for photons in [1 << 12, 1 << 16, 1 << 21] {
+        let far = spec().with_gamma_deg(&[2.0]).unwrap().with_c_deg(&[10.0]).unwrap();
+        let scene = bare(&batwing, far);
+        let s = FarFieldStatistics::new(&scene, &run(&scene, photons, 8), 0);
+        let (max, error) = (s.max_candela.value, s.max_candela.standard_error.unwrap());
+        assert!((max - 1071.874).abs() < 4.0 * error, "{photons}: {max} +- {error}");
+        match s.beam_angle_deg[1] {
+            Some(angle) => {
+                assert!((angle.value - exact).abs() < 0.1 * exact, "{photons}: {angle:?} {exact}");
+                told += 1;
+            }
+            None => {
+                assert!(s.angles_absent.is_some());
+                assert!(s.warnings(&scene.far_fields[0]).iter().any(|w| w.code == "far-field-noise"));
+                unknown += 1;
+            }
+        }
+    }
+    assert!(told >= 1 && unknown >= 1, "{told} {unknown}");
+}
+
+/// The error that is told of a node is about the spread over seeds, averaged nodes with few hits among them; and so is the
+/// flux's, where half of the light is outside.
+#[test]
+fn errors_are_neither_too_small_nor_too_large() {
+    let led = photometric::read(data::own_file("led.ies")).unwrap();
+    let far = spec().with_gamma_deg(&[5.0]).unwrap().with_symmetry(Symmetry::Rotational);
+    let half = FarFieldSpec::new("half", AimFrame::new(DVec3::X, None).unwrap()).unwrap();
+    let half = half.with_gamma_deg(&[0.0, 45.0, 90.0]).unwrap().with_c_deg(&[30.0]).unwrap();
+    let lamp = Photometric::new(&led, DVec3::ZERO, down(), None).unwrap();
+    let mut builder = SceneBuilder::new();
+    builder.emitter("lamp", Emitter::Photometric(lamp)).far_field(far).far_field(half);
+    let scene = builder.build().unwrap();
+    let seeds = 30;
+    let rows = 16;
+    let (mut values, mut said) = (vec![Vec::new(); rows + 1], vec![0.0; rows + 1]);
+    for seed in 1..=seeds {
+        let mut settings =
+            Settings { photons: Some(1 << 14), replicates: Some(8), seed, ..Settings::default() };
+        settings.algorithm.sequence = caustix::sequence::Sequence::Independent;
+        let plan = Plan::new(&settings).unwrap();
+        let outcome = trace(&scene, &plan, &AtomicBool::new(false), &|_| {}).unwrap();
+        let [s, half] = [0, 1].map(|i| FarFieldStatistics::new(&scene, &outcome, i));
+        let (planes, errors) = (s.table.nodes.planes(), s.table.standard_error_cd.as_ref().unwrap());
+        for row in 0..rows {
+            values[row].push(s.table.candela[row * planes]);
+            said[row] += errors[row * planes] / seeds as f64;
+        }
+        values[rows].push(half.flux_lm);
+        said[rows] += half.flux_standard_error_lm.unwrap() / seeds as f64;
+    }
+    for (row, (values, said)) in values.iter().zip(said).enumerate() {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let spread = (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)).sqrt();
+        // 30 seeds know a spread to 13 %; the pole's floor of few hits is an upper bound.
+        let most = if row == 0 { 3.0 } else { 1.6 };
+        assert!(said > 0.6 * spread && said < most * spread, "row {row}: said {said}, spread {spread}");
+    }
+}
+
 /// A beam has one direction: all of its light is on the nodes there, exactly at a pole, at C = 360 and at gamma = 90 too.
 #[test]
 fn a_single_direction_is_exact() {
@@ -332,7 +400,7 @@ c_deg = 30
         // No steps follow a beam without width.
         assert!(s.unresolved.unwrap().value > 0.3, "{aim}: {:?}", s.unresolved);
         let codes: Vec<_> = s.warnings(&scene.far_fields[0]).iter().map(|w| w.code).collect();
-        assert_eq!(codes, ["far-field-steps"], "{aim}");
+        assert!(codes.contains(&"far-field-steps"), "{aim}: {codes:?}");
     }
 }
 
@@ -363,7 +431,7 @@ symmetry = "rotational"
     assert_eq!((s.flux_lm, s.efficiency.value, s.max_candela.value), (0.0, 0.0, 0.0));
     assert_eq!((s.beam_angle_deg, s.field_angle_deg), ([None; 2], [None; 2]));
     assert!(s.table.candela.iter().all(|c| *c == 0.0));
-    assert_eq!((s.noise, s.unresolved.map(|u| u.value)), (Some(0.0), Some(0.0)));
+    assert_eq!((s.noise, s.unresolved), (None, None));
     let said = s.warnings(&scene.far_fields[0]);
     assert!(said.iter().any(|w| w.code == "far-field-dark"), "{said:?}");
     assert!(serde_json::to_string(&s).unwrap().contains("\"flux_lm\":0.0"));
@@ -384,7 +452,7 @@ fn an_asymmetry_is_measured_whatever_the_noise() {
         let s = FarFieldStatistics::new(&scene, &run(&scene, photons, 8), 0);
         (s.asymmetry.unwrap(), s.warnings(&scene.far_fields[0]).len(), s)
     };
-    // By quadrature: the norm of the table less its mean over C, over that of the mean; planes and mirrored planes likewise.
+    // By quadrature: the norm of the table less its mean over C, over its own; planes and mirrored planes likewise.
     let value = |g: f64, c: f64| photometry.web.intensity_cd(g, c);
     let (mut all, mut mean_gone, mut mirror_gone) = (0.0, 0.0, 0.0);
     for i in 0..600 {
@@ -399,7 +467,7 @@ fn an_asymmetry_is_measured_whatever_the_noise() {
             mirror_gone += measure * (0.5 * (row[c as usize] - mirrored)).powi(2);
         }
     }
-    let expected = [mean_gone, mirror_gone].map(|gone: f64| (gone / (all - gone)).sqrt());
+    let expected = [mean_gone, mirror_gone].map(|gone: f64| (gone / all).sqrt());
     for (symmetry, expected) in ["rotational", "bilateral 90-270"].into_iter().zip(expected) {
         for photons in [1 << 14, 1 << 19] {
             let (asymmetry, warnings, s) = of(symmetry, photons);
@@ -420,7 +488,7 @@ fn steps_are_chosen_by_what_the_light_shows() {
     let step = |name: &str, photons: u64| {
         let scene = bare(&photometric::read(data::own_file(name)).unwrap(), spec());
         let s = FarFieldStatistics::new(&scene, &run(&scene, photons, 8), 0);
-        let (unresolved, noise) = (s.unresolved.unwrap(), s.noise.unwrap());
+        let (Some(unresolved), Some(noise)) = (s.unresolved, s.noise) else { return s.widest_step_deg };
         let most = 1.5 * noise + 2.0 * unresolved.standard_error.unwrap();
         assert!(unresolved.value <= most, "{name}: {unresolved:?} {noise}");
         s.widest_step_deg

@@ -79,6 +79,17 @@ pub fn averaged(nodes: &Nodes, b: &[f64], symmetry: Symmetry) -> Vec<f64> {
     b.chunks_exact(planes).enumerate().flat_map(of_row).collect()
 }
 
+/// How many planes are averaged into this one, by what they stand for.
+pub fn count_of_equals(nodes: &Nodes, plane: usize, symmetry: Symmetry) -> f64 {
+    if symmetry == Symmetry::Rotational {
+        return 1.0 / part_of_circle(nodes, plane);
+    }
+    let mut equal = nodes.equal_planes(plane, symmetry).unwrap_or(vec![plane]);
+    equal.sort_unstable();
+    equal.dedup();
+    equal.len() as f64
+}
+
 /// The integral of a plane's hat in C, as a part of the circle.
 fn part_of_circle(nodes: &Nodes, plane: usize) -> f64 {
     let before = match plane.checked_sub(1) {

@@ -67,10 +67,11 @@ pub struct Table {
     pub held: usize,
     /// The table of each replicate alone times the number of replicates, before that; empty for one replicate.
     pub replicates: Vec<Vec<f64>>,
-    /// Of its norm: what noise leaves unknown (root mean square over the sphere); `None` for one replicate.
+    /// Of its norm: what noise leaves unknown (root mean square over the sphere); `None` for one replicate, and where the table
+    /// is all noise.
     pub noise: Option<f64>,
     /// Of its norm: what a table of half the steps follows and this one does not, noise taken off, and its standard error;
-    /// `None` for one replicate.
+    /// likewise.
     pub unresolved: Option<(f64, f64)>,
     /// Of its norm: what was not symmetric and has been averaged away, likewise; `None` where no symmetry was asked for,
     /// too.
@@ -87,24 +88,29 @@ pub fn table(field: &FarField, sums: &Sums, photon_lm: f64) -> Table {
     let fit = levels.fit(steps, field.symmetry);
     let is_known = counted.len() > 1;
     let finer = levels.fit(steps.map(|doublings| doublings - 1), field.symmetry);
-    let norm = finer.energy().max(f64::MIN_POSITIVE);
-    let share = |energy: f64| (energy.max(0.0) / norm).sqrt();
+    // A table that is all noise has no norm to compare with.
+    let norm = |fit: &Fit| Some(fit.energy()).filter(|energy| is_known && *energy > fit.noise());
     // Of a square root; where that is all noise, of the square itself.
     let beyond = |fit: &Fit, coarser: &Fit| {
-        let (energy, error) = fit.energy_beyond(coarser);
-        let size = share(energy);
-        (size, if size * size * norm > error { error / norm / (2.0 * size) } else { share(error) })
+        let (norm, (energy, error)) = (norm(fit)?, fit.energy_beyond(coarser));
+        let size = (energy.max(0.0) / norm).sqrt();
+        Some((
+            size,
+            if size * size * norm > error { error / norm / (2.0 * size) } else { (error / norm).sqrt() },
+        ))
     };
-    let unresolved = is_known.then(|| beyond(&finer, &fit));
-    let asymmetry = (is_known && field.symmetry != Symmetry::None)
-        .then(|| beyond(&levels.fit(steps, Symmetry::None), &fit));
+    let unresolved = beyond(&finer, &fit);
+    let asymmetry = match field.symmetry {
+        Symmetry::None => None,
+        _ => beyond(&levels.fit(steps, Symmetry::None), &fit),
+    };
     let (candela, held) = solve_positive(&fit.mass, &fit.b);
     Table {
-        standard_error_cd: is_known.then(|| fit.standard_error(photon_lm)),
+        standard_error_cd: is_known.then(|| fit.standard_error(photon_lm, field.symmetry)),
         candela: fit.spread_over_poles(candela),
         held,
         replicates: if is_known { fit.each() } else { Vec::new() },
-        noise: is_known.then(|| share(fit.noise())),
+        noise: norm(&fit).map(|norm| (fit.noise() / norm).sqrt()),
         unresolved,
         asymmetry,
         nodes: fit.nodes,
@@ -238,16 +244,21 @@ impl Fit {
 
     /// Spread of the replicates. A node with few hits, whose spread says little, has at least the error of (hits + 1), as
     /// a cell of a receiver has.
-    fn standard_error(&self, photon_lm: f64) -> Vec<f64> {
+    fn standard_error(&self, photon_lm: f64, symmetry: Symmetry) -> Vec<f64> {
         let (r, solid) = (self.count(), self.mass.solid_angles_sr());
+        // An averaged node has the hits of all that are equal to it.
+        let planes = self.nodes.planes();
+        let equal: Vec<f64> =
+            (0..planes).map(|plane| levels::count_of_equals(&self.nodes, plane, symmetry)).collect();
         let of = |entry: usize| {
             let mean = self.c[entry] / r;
             let squares: f64 =
                 self.replicates.iter().map(|one| (one.c[entry] - mean) * (one.c[entry] - mean)).sum();
             let spread = (r / (r - 1.0) * squares).sqrt();
-            let hits = self.b[entry] / photon_lm;
-            let fewest =
-                if hits < FEWEST_HITS as f64 { (hits + 1.0).sqrt() * photon_lm / solid[entry] } else { 0.0 };
+            let equal = if self.nodes.is_pole(entry / planes) { 1.0 } else { equal[entry % planes] };
+            let hits = equal * self.b[entry] / photon_lm;
+            let is_few = hits < FEWEST_HITS as f64;
+            let fewest = if is_few { (hits + 1.0).sqrt() * photon_lm / (equal * solid[entry]) } else { 0.0 };
             spread.max(fewest)
         };
         let all = (0..self.mass.entries()).map(|e| if self.mass.is_node(e) { of(e) } else { 0.0 }).collect();
@@ -288,14 +299,22 @@ impl Table {
             // Planes that a symmetry makes equal are so but for rounding.
             (0..c.len()).fold(0, |best, i| if c[i] > c[best] + 1e-12 * c[best].abs() { i } else { best })
         };
-        let at = greatest(&self.candela);
-        let Some(errors) = &self.standard_error_cd else { return (self.candela[at], None, at) };
+        let Some(errors) = &self.standard_error_cd else {
+            let at = greatest(&self.candela);
+            return (self.candela[at], None, at);
+        };
         let halves = [0, 1].map(|first| {
             let half: Vec<_> = self.replicates.iter().skip(first).step_by(2).collect();
             let mean = |i: usize| half.iter().map(|c| c[i]).sum::<f64>() / half.len() as f64;
             (0..self.candela.len()).map(mean).collect::<Vec<f64>>()
         });
-        let [a, b] = [greatest(&halves[0]), greatest(&halves[1])];
+        // Nodes of which little is known are not chosen for it: two standard errors, of a half run.
+        let surely = |c: &[f64], errors_of: f64| {
+            greatest(&c.iter().zip(errors).map(|(c, e)| c - errors_of * e).collect::<Vec<f64>>())
+        };
+        let of_half = 2.0 * 2f64.sqrt();
+        let [a, b] = [surely(&halves[0], of_half), surely(&halves[1], of_half)];
+        let at = surely(&self.candela, 2.0);
         let value = 0.5 * (halves[1][a] + halves[0][b]);
         (value.max(0.0), Some((0.5 * (errors[a] * errors[a] + errors[b] * errors[b])).sqrt()), at)
     }

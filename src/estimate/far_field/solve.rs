@@ -90,6 +90,9 @@ pub fn solve_positive(mass: &Mass, b: &[f64]) -> (Vec<f64>, usize) {
         changed.iter().for_each(|&i| free[i] = !free[i]);
     }
     c.iter_mut().for_each(|c| *c = c.max(0.0));
+    // What rounding, or rounds that ended too early, left of the sum.
+    let scale = sum / dot(&m, &c);
+    c.iter_mut().for_each(|c| *c *= scale);
     (c, nodes - free.iter().filter(|f| **f).count())
 }
 
