@@ -41,7 +41,7 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    check_far_fields(scene, plan)?;
+    check_kept(scene, plan)?;
     if !together(scene, plan) {
         let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
             tracer.trace(end, receivers, interrupt, progress)
@@ -90,23 +90,39 @@ pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
 fn counters(scene: &Scene, plan: &Plan) -> u64 {
     let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
     let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
-    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.len() as u64).sum();
-    (cells + nodes).saturating_mul(u64::from(plan.replicates()))
+    let (nodes, fine) = kept(scene);
+    (cells + nodes + fine).saturating_mul(u64::from(plan.replicates()))
 }
 
-/// That there is room for the far fields of every replicate, which are all kept: their errors need them.
+/// Nodes of far fields and fine cells of spots.
+fn kept(scene: &Scene) -> (u64, u64) {
+    let fine = scene.receivers.iter().filter_map(|receiver| receiver.spot);
+    let nodes = scene.far_fields.iter().map(|field| field.nodes.len() as u64);
+    (nodes.sum(), fine.map(|spot| spot.cells() as u64).sum())
+}
+
+/// That there is room for the far fields and spots of every replicate, which are all kept: their errors need them.
 ///
 /// # Errors
-/// More than 2^27 nodes.
-pub(super) fn check_far_fields(scene: &Scene, plan: &Plan) -> Result<()> {
-    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.len() as u64).sum();
-    let all = nodes.saturating_mul(u64::from(plan.replicates()));
-    if all <= MOST_COUNTERS {
+/// More than 2^27 nodes and fine cells.
+pub(super) fn check_kept(scene: &Scene, plan: &Plan) -> Result<()> {
+    let (nodes, fine) = kept(scene);
+    let replicates = plan.replicates();
+    if (nodes + fine).saturating_mul(u64::from(replicates)) <= MOST_COUNTERS {
         return Ok(());
     }
-    let found =
-        format!("{} replicates of {nodes} nodes in far fields, half steps included", plan.replicates());
-    Err(Diagnostic::new(Kind::Limit, found, "at most 2^27 nodes in all: fewer replicates, or wider steps"))
+    let (found, required) = if fine == 0 {
+        (
+            format!("{replicates} replicates of {nodes} nodes in far fields, half steps included"),
+            "at most 2^27 nodes in all: fewer replicates, or wider steps",
+        )
+    } else {
+        (
+            format!("{replicates} replicates of {fine} fine cells of spots and {nodes} nodes of far fields"),
+            "at most 2^27 in all: fewer replicates, or fewer receivers with `spot`",
+        )
+    };
+    Err(Diagnostic::new(Kind::Limit, found, required))
 }
 
 /// A replicate as far as it is traced.
