@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::estimate::spot::Encircled;
 use crate::report::colour::Colour;
 use crate::report::colour::scale::linear_ticks;
 use crate::report::numbers::{digits, rounded, with_error};
@@ -15,18 +16,30 @@ use super::page::{MARGIN, WIDTH, curve_pen, finished, title};
 const TICK_SIZE: f64 = 13.0;
 const TOP: f64 = 84.0;
 const HEIGHT: f64 = 330.0;
+/// Room for the name of the axis along the foot.
+const NAME: f64 = 16.0;
 /// Room for the numbers of the upright axis.
 const LABELS: f64 = 52.0;
 /// Parts of the peak below which a section is not worth its width.
 const DIM: f64 = 2e-3;
+/// Share of the flux at which a curve is at its end.
+const FULL: f64 = 0.999;
 
 /// Share of the receiver's flux within a circle about the centroid, with its band of 95 % and both diameters.
 pub fn encircled(name: &str, figures: &SpotFigures) -> Drawing {
     let outermost = figures.encircled.last().map_or(0.0, |point| point.radius_m);
-    let end_m = (1.25 * figures.d86_m.by_cells[1]).min(outermost).max(f64::MIN_POSITIVE);
+    // To where nearly all of it is in, unless that is a halo far outside.
+    let full = figures.encircled.iter().find(|point| point.share.value >= FULL);
+    let of_d86 = 0.5 * figures.d86_m.by_cells[1];
+    let end_m = (1.08 * full.map_or(outermost, |point| point.radius_m))
+        .clamp(1.15 * of_d86, 4.0 * of_d86)
+        .max(f64::MIN_POSITIVE);
     let (unit, unit_name) = unit_of(2.0 * end_m);
     let chart = Chart { x: 0.0..unit * end_m, y: 0.0..100.0 };
-    let shown: Vec<_> = figures.encircled.iter().filter(|point| point.radius_m <= end_m).collect();
+    let mut shown: Vec<_> =
+        figures.encircled.iter().filter(|point| point.radius_m <= end_m).cloned().collect();
+    // Beyond the last photon nothing is left to come.
+    shown.extend(shown.last().filter(|_| outermost < end_m).map(|p| Encircled { radius_m: end_m, ..*p }));
     let mut shapes = vec![title(&format!("Encircled flux: {name}"))];
     let t = figures.student.unwrap_or(0.0);
     let ends = shown.iter().map(|point| {
@@ -43,8 +56,8 @@ pub fn encircled(name: &str, figures: &SpotFigures) -> Drawing {
         let pen = Pen { dash_px: Some([5.0, 4.0]), ..Pen::solid(1.3, Colour::grey(90)) };
         shapes.push(polyline([[chart.at_x(0.0), at[1]], at, [at[0], chart.at_y(0.0)]], pen));
         let label = format!("{label} = {} {unit_name}", rounded(unit * d.value, 4));
-        let place = label_place(at, &label);
-        shapes.push(text(place, &label, TextStyle::new(TICK_SIZE, Colour::grey(20)).weighing(1.25)));
+        let style = TextStyle::new(TICK_SIZE, Colour::grey(20)).weighing(1.25);
+        shapes.push(beside_curve(at, &label, style));
     }
     let legend = [("flux in the circle; band: 95 %, noise and fine cells".to_owned(), curve_pen(0, false))];
     let [d50, d86] = [&figures.d50_m, &figures.d86_m].map(|d| diameter_text(d, (unit, unit_name)));
@@ -57,7 +70,7 @@ pub fn encircled(name: &str, figures: &SpotFigures) -> Drawing {
         format!("centroid u {u}, v {v}"),
         format!("RMS radius {rms}"),
     ];
-    finished(shapes, TOP + HEIGHT, legend, &footer)
+    finished(shapes, TOP + HEIGHT + NAME, legend, &footer)
 }
 
 /// Illuminance of the cells along u and along v through a point, each with its band of 95 %.
@@ -74,7 +87,7 @@ pub fn sections(name: &str, figures: &SpotFigures) -> Drawing {
         _ => 0.0,
     };
     let pad = (0.08 * (high - low))
-        .max(figures.sections.iter().map(|cells| spacing(cells)).fold(0.0, f64::max))
+        .max(figures.sections.iter().map(|cells| 1.02 * spacing(cells)).fold(0.0, f64::max))
         .max(f64::MIN_POSITIVE);
     let range_m = low - pad..high + pad;
     let (unit, unit_name) = unit_of(range_m.end - range_m.start);
@@ -103,12 +116,15 @@ pub fn sections(name: &str, figures: &SpotFigures) -> Drawing {
     let legend = ["along u", "along v"].into_iter().enumerate();
     let legend = legend.map(|(along, label)| (label.to_owned(), curve_pen(along, false)));
     let [u, v] = figures.sections_at_m.map(digits);
-    let peak = figures.peak.illuminance_lx.map_or("not known: its cells are too noisy".into(), |lx| {
-        with_error(lx.value, Some(lx.standard_error), "lx")
-    });
+    let peak = figures
+        .peak
+        .illuminance_lx
+        .map_or("not known: one replicate, or fewer than ten photons in its cell".into(), |lx| {
+            with_error(lx.value, Some(lx.standard_error), "lx")
+        });
     let band = if figures.student.is_some() { "; bands: 95 % of each cell" } else { "" };
     let footer = [format!("through u {u} m, v {v} m{band}"), format!("peak {peak}")];
-    finished(shapes, TOP + HEIGHT, legend, &footer)
+    finished(shapes, TOP + HEIGHT + NAME, legend, &footer)
 }
 
 fn centroid(figures: &SpotFigures) -> [String; 2] {
@@ -118,10 +134,14 @@ fn centroid(figures: &SpotFigures) -> [String; 2] {
     })
 }
 
-/// Right of and below a point of the curve, which rises to the right; left of the frame's end.
-fn label_place([x, y]: [f64; 2], label: &str) -> [f64; 2] {
-    let right = WIDTH as f64 - MARGIN - 8.0 - font::width_px(label, TICK_SIZE, true) * 1.06;
-    [(x + 8.0).min(right), y + 18.0]
+/// A label left of and above a point of the curve, which rises to the right; right of and below it where there is no room.
+fn beside_curve([x, y]: [f64; 2], label: &str, style: TextStyle) -> Shape {
+    let width = 1.06 * font::width_px(label, TICK_SIZE, true);
+    if x - 8.0 - width > Chart::LEFT + 4.0 {
+        text([x - 8.0, y - 7.0], label, style.anchored(Anchor::End))
+    } else {
+        text([x + 8.0, y + 18.0], label, style)
+    }
 }
 
 /// The ranges of a chart in the units of its axes.
@@ -178,6 +198,6 @@ impl Chart {
         let frame = [[left, TOP], [right, TOP], [right, foot], [left, foot], [left, TOP]];
         shapes.push(polyline(frame, hairline(130)));
         shapes.push(text([MARGIN, TOP - 12.0], upright, style));
-        shapes.push(text([0.5 * (left + right), foot + 36.0], along, style.anchored(Anchor::Middle)));
+        shapes.push(text([0.5 * (left + right), foot + 38.0], along, style.anchored(Anchor::Middle)));
     }
 }

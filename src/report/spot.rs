@@ -32,7 +32,7 @@ pub(super) struct MapCells<'a> {
     /// NaN where one replicate leaves them unknown.
     pub errors: &'a [f64],
     pub hits: &'a [u64],
-    /// The brightest, where it is known.
+    /// The brightest of them, lx, where it is known.
     pub maximum: Option<Interval>,
 }
 
@@ -86,7 +86,8 @@ pub struct SpotFigures {
 /// The brightest cell of a map.
 #[derive(Debug, Clone, Serialize)]
 pub struct Peak {
-    /// Mean illuminance in it, lx, noise's choice of the cell taken off (METHOD 7); `None` where cells are too noisy.
+    /// Mean illuminance in it, lx: half of the replicates choose the cell and the others value it (METHOD 7). `None` for one
+    /// replicate, and where it has fewer than ten photons.
     pub illuminance_lx: Option<Interval>,
     /// Its middle, u and v in m.
     pub at_m: [f64; 2],
@@ -240,7 +241,7 @@ impl SpotFigures {
         let [d50, d86] = [&self.d50_m, &self.d86_m].map(|d| diameter_text(d, (unit, name)));
         writeln!(out, "               D50 {d50}, D86.5 {d86}; 95 %, cells included")?;
         let [u, v] = self.peak.at_m.map(digits);
-        let peak = self.peak.illuminance_lx.map_or("not known, as max".into(), |lx| {
+        let peak = self.peak.illuminance_lx.map_or("not known".into(), |lx| {
             format!("{} lx ({} to {})", digits(lx.value), digits(lx.low), digits(lx.high))
         });
         writeln!(out, "               peak {peak}, in the cell about u {u} m, v {v} m")

@@ -141,7 +141,7 @@ impl ReceiverStatistics {
         let key = if receiver.size_m.is_some() { "grid" } else { "cells" };
         let uniformity = Uniformity::new(extremes, receiver.cells, key, outcome);
         let spot = receiver.spot.as_ref().zip(grid_of(receiver.cells)).map(|(spot, counts)| {
-            let maximum = uniformity.maximum;
+            let maximum = outcome.peak_lx(index, receiver.areas_m2());
             let (lx, errors, hits) = (&illuminance_lx, &standard_error_lx, &outcome.cells()[index].sum);
             SpotStatistics::new(spot, outcome, index, &MapCells { counts, lx, errors, hits, maximum })
         });

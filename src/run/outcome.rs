@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind};
-use crate::estimate::extremes::{Extremes, Map, Unknown};
+use crate::estimate::extremes::{Extremes, Interval, Map, Unknown};
 use crate::estimate::far_field::{self, Sums, Table};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
@@ -227,6 +227,13 @@ impl Outcome {
         let (sum, square) = (self.totals.sum[receiver], self.totals.square[receiver]);
         let error_of_sum = standard_error_of_total(sum, square, self.replicates);
         Map { cells: &self.cells[receiver], areas_m2, error_of_sum, replicates: self.replicates }.extremes()
+    }
+
+    /// The brightest cell of a receiver with these cell areas, lx; `None` where it is not known.
+    pub(crate) fn peak_lx(&self, receiver: usize, areas_m2: &[f64]) -> Option<Interval> {
+        let (cells, replicates) = (&self.cells[receiver], self.replicates);
+        let peak = Map { cells, areas_m2, error_of_sum: None, replicates }.peak();
+        peak.map(|peak| peak.times(self.photon_lm))
     }
 
     /// The mean of a receiver's evaluation grid in photons a square metre, and the extremes of its cells of this area.

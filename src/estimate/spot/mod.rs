@@ -114,7 +114,7 @@ pub fn figures(spot: &Spot, replicates: &[SpotCount]) -> Result<Figures, TooFew>
     };
     let lit = Lit::of(spot, replicates);
     let rings = lit.rings(all.mean_m, None);
-    let mut curve = Curve { lit: &lit, rings: &rings, without: &without };
+    let curve = Curve { lit: &lit, rings: &rings, without: &without };
     Ok(Figures {
         photons: all.photons,
         centroid_m: [0, 1].map(|i| figure(&|places| places.mean_m[i], unit_m[i])),
@@ -237,7 +237,7 @@ impl Curve<'_> {
 
     /// Diameters of both shares: the error of the share within the radius found, carried to the radius by the curve itself, so
     /// that an interval ends where the curve reaches the ends of that of the share (Woodruff 1952).
-    fn diameters(&mut self) -> [Diameter; 2] {
+    fn diameters(&self) -> [Diameter; 2] {
         let radii = SHARES.map(|share| self.rings.radius(share, Across::ByArea));
         let errors = self.errors(&radii);
         [0, 1].map(|i| {
@@ -247,12 +247,17 @@ impl Curve<'_> {
             let t = student((self.without.len() as u32).saturating_sub(1));
             let half =
                 |e: f64| 0.5 * (diameter(share + e, Across::ByArea) - diameter(share - e, Across::ByArea));
+            // A place is rounded to its unit, and so is the centre.
+            let unit_m = self.lit.spot.size_m.map(|side| side / (1u64 << PLACE_BITS) as f64);
+            let rounding = 2.0 * libm::hypot(unit_m[0], unit_m[1]);
+            let low = |e: f64| (diameter(share - e, Across::In) - rounding).max(0.0);
+            let high = |e: f64| diameter(share + e, Across::Out) + rounding;
             Diameter {
                 value: 2.0 * radii[i],
                 standard_error: error.map(half),
-                low: error.map(|e| diameter(share - t * e, Across::In)),
-                high: error.map(|e| diameter(share + t * e, Across::Out)),
-                by_cells: [Across::In, Across::Out].map(|across| diameter(share, across)),
+                low: error.map(|e| low(t * e)),
+                high: error.map(|e| high(t * e)),
+                by_cells: [low(0.0), high(0.0)],
             }
         })
     }
