@@ -311,7 +311,7 @@ mod tests {
         };
         assert_eq!(figures(&spot, &[]).unwrap_err(), TooFew { photons: 0 });
         assert_eq!(figures(&spot, &[count(60), count(39)]).unwrap_err(), TooFew { photons: 99 });
-        // All in the middle of one cell: the place is known, the diameter is anything up to the cell's.
+        // All in the middle of one cell: the place is known, the diameter is anything up to the cell's and roundings of 2^-32.
         for replicates in [vec![count(100)], vec![count(100), count(0)], vec![count(70), count(80)]] {
             let of = figures(&spot, &replicates).unwrap();
             let is_known = replicates.len() == 2 && replicates[1].photons > 0;
@@ -322,7 +322,7 @@ mod tests {
             let cell = 1.0 / 1024.0;
             for d in of.diameters_m {
                 assert_eq!(d.by_cells[0], 0.0);
-                assert!((d.by_cells[1] / cell - std::f64::consts::SQRT_2).abs() < 1e-6, "{d:?}");
+                assert!((d.by_cells[1] / cell - std::f64::consts::SQRT_2).abs() < 2e-6, "{d:?}");
                 assert_eq!((d.low, d.high.is_some()), (is_known.then_some(0.0), is_known));
             }
             assert_eq!(of.edge_share, 1.0);

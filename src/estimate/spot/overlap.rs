@@ -23,10 +23,11 @@ fn below(radius: f64, x0: f64, x1: f64, y: f64) -> f64 {
     flat + left + right
 }
 
-/// Integral of the height of the circle from 0 to x.
+/// Integral of the height of the circle from 0 to x. The angle is that of a tangent: near a right one the arcsine loses half
+/// of its digits.
 fn half_disc(radius: f64, x: f64) -> f64 {
-    let sine = (x / radius).clamp(-1.0, 1.0);
-    0.5 * (x * ((radius - x) * (radius + x)).max(0.0).sqrt() + radius * radius * libm::asin(sine))
+    let height = ((radius - x) * (radius + x)).max(0.0).sqrt();
+    0.5 * (x * height + radius * radius * libm::atan2(x, height))
 }
 
 #[cfg(test)]
