@@ -30,6 +30,7 @@ pub fn files() -> Vec<(&'static str, String)> {
         ("uplight.ies", uplight()),
         ("wall_washer_1991.ies", wall_washer_1991()),
         ("panel_2019.ies", panel_2019()),
+        ("led.ies", led()),
     ]
 }
 
@@ -71,6 +72,16 @@ fn spot() -> String {
     let file =
         File { labels: &["[TEST] caustix spot", "[LUMINAIRE] narrow beam"], ..File::new("IESNA:LM-63-2002") };
     file.write(&Table { vertical, horizontal: vec![0.0], decimals: 2 }, |v, _| 12000.0 * gauss(v / 5.0))
+}
+
+/// A light-emitting diode without lens: I = 40 cos V cd, dark beyond 90 degrees.
+fn led() -> String {
+    let file = File {
+        labels: &["[TEST] caustix led", "[LUMINAIRE] light-emitting diode"],
+        ..File::new("IESNA:LM-63-2002")
+    };
+    let table = Table { vertical: steps(0.0, 2.5, 37), horizontal: vec![0.0], decimals: 4 };
+    file.write(&table, |v, _| 40.0 * cos_deg(v))
 }
 
 /// A Lambertian emitter: I = 1000 cos V cd, so the flux is 1000 pi lm.

@@ -113,6 +113,7 @@ pub use geometry::{
     Sphere, Surface, Transform, Wave, box_mesh,
 };
 pub use scene::camera::{Camera, CameraSpec};
+pub use scene::far_field::{FarFieldSpec, Symmetry};
 pub use scene::media::Medium;
 pub use scene::receiver::{ReceiverEvents, ReceiverSide, ReceiverSpec};
 pub use scene::{Joint, Scene, SceneBuilder, SurfaceOptions};
@@ -131,6 +132,10 @@ pub use transport::{Census, Ledger};
 pub use plot::maps::write_png as write_map_png;
 #[cfg(feature = "plots")]
 pub use plot::picture::{write_luminance_png, write_png as write_picture_png};
+pub use report::far_field::{
+    FarFieldStatistics, Measured, export as export_far_field, write_csv as write_far_field_csv,
+    write_exr as write_far_field_exr,
+};
 pub use report::json::Report;
 pub use report::maps::{
     write_csv as write_map_csv, write_exr as write_map_exr, write_grid_csv as write_map_grid_csv,

@@ -52,7 +52,7 @@ pub fn all(folder: &Path) -> Vec<Reader> {
     vec![
         of(
             "LM-63",
-            120,
+            200,
             corpus::lamps(),
             A_TEXT,
             Box::new(|bytes, _| photometry(&bytes, corpus::TILT.as_bytes())),

@@ -14,6 +14,7 @@ use crate::picture;
 use crate::report::json::json;
 use crate::report::numbers::{digits, duration, grouped};
 use crate::run::dark::is_long;
+use crate::run::plan::DEFAULT_REPLICATES;
 use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
 use crate::scene::receiver::DividedBy;
@@ -31,6 +32,8 @@ struct Check {
     surfaces: Vec<SurfaceCheck>,
     emitters: Vec<EmitterCheck>,
     receivers: Vec<ReceiverCheck>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    far_fields: Vec<FarFieldCheck>,
     #[serde(skip_serializing_if = "Option::is_none")]
     camera: Option<CameraCheck>,
     memory_mb: f64,
@@ -106,8 +109,9 @@ fn probe_ended(photons: u64) -> Warning {
         severity: Severity::Doubtful,
         code: "probe-ended",
         message: format!(
-            "the probe was ended after {} s, at {photons} photons: what more of them would find is not known",
-            LONGEST_PROBE.as_secs()
+            "the probe was ended after {} s, at {} photons: what more of them would find is not known",
+            LONGEST_PROBE.as_secs(),
+            grouped(photons)
         ),
         surfaces: Vec::new(),
         share: None,
@@ -138,6 +142,13 @@ struct ReceiverCheck {
     #[serde(skip_serializing_if = "is_not")]
     cells_by_pilot: bool,
     area_m2: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct FarFieldCheck {
+    name: String,
+    /// Nodes that a run counts, half steps included.
+    nodes: usize,
 }
 
 fn is_not(flag: &bool) -> bool {
@@ -188,6 +199,11 @@ impl Check {
             cells_by_pilot: r.divided_by == DividedBy::Default,
             area_m2: r.total_area_m2(),
         });
+        let far_fields: Vec<_> = scene
+            .far_fields
+            .iter()
+            .map(|f| FarFieldCheck { name: f.name.clone(), nodes: f.nodes.count() })
+            .collect();
         let camera = scene.camera.as_ref().map(|c| CameraCheck {
             pixels: c.pixels,
             samples: c.samples,
@@ -198,13 +214,20 @@ impl Check {
         let per_cell = 2 * size_of::<u64>() + size_of::<u128>();
         let cells: usize = scene.receivers.iter().map(|r| r.cells.len()).sum();
         let of_camera = scene.camera.as_ref().map_or(0, |c| picture::memory_bytes(c, scene.is_coloured()));
-        let memory_bytes = (scene.memory_bytes() + cells * per_cell) as u64 + of_camera;
+        // Counters of every replicate, twice.
+        let replicates = DEFAULT_REPLICATES as usize;
+        let nodes: usize =
+            far_fields.iter().map(|f| f.nodes).sum::<usize>() * 2 * replicates * size_of::<u64>();
+        let fine: usize = scene.receivers.iter().filter_map(|r| r.spot).map(|spot| spot.cells()).sum();
+        let kept = nodes + fine * 2 * replicates * size_of::<u64>();
+        let memory_bytes = (scene.memory_bytes() + cells * per_cell + kept) as u64 + of_camera;
         Self {
             ok: true,
             requires: requirements(scene),
             surfaces: surfaces.collect(),
             emitters: emitters.collect(),
             receivers: receivers.collect(),
+            far_fields,
             camera,
             memory_mb: memory_bytes as f64 / 1e6,
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
@@ -243,6 +266,10 @@ impl Check {
                 false => format!("{} cells", grouped(r.cells as u64)),
             };
             out += &format!("receiver   {}: {cells}, {} m2\n", r.name, digits(r.area_m2));
+        }
+        for f in &self.far_fields {
+            out +=
+                &format!("far field  {}: {} nodes, half steps included\n", f.name, grouped(f.nodes as u64));
         }
         if let Some(c) = &self.camera {
             let ([columns, rows], samples, method) = (c.pixels, c.samples, c.method);

@@ -1,4 +1,5 @@
-//! `caustix photometry`: what a lighting engineer wants to read about files, and files of one format as another.
+//! `caustix photometry`: what a lighting engineer wants to read about files, and files of one format as
+//! another.
 
 use std::path::PathBuf;
 

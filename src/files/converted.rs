@@ -1,4 +1,5 @@
-//! Luminaires to the bytes of a photometric file, which are read back before anybody is told that they are written.
+//! Luminaires to the bytes of a photometric file, which are read back before anybody is told that they are
+//! written.
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::eulumdat::write as eulumdat;
@@ -7,7 +8,8 @@ use crate::files::photometric::parse;
 use crate::photometry::Web;
 use crate::photometry::export::{Export, PhotometricFile};
 
-/// Half a unit of nine digits of 360 degrees, twice: mirrored angles are rounded apart from those that they mirror.
+/// Half a unit of nine digits of 360 degrees, twice: mirrored angles are rounded apart from those that they
+/// mirror.
 const ANGLES_DEG: f64 = 1e-6;
 
 /// What can be written.
@@ -44,8 +46,8 @@ impl ExportFormat {
 
 /// The file of a luminaire. It was read back to the table that it says it has, to 1e-12 of each intensity.
 ///
-/// # Errors
-/// Those of the writers; [`Kind::Range`] where what was written is read as something else, which is then not to be used.
+/// # Errors Those of the writers; [`Kind::Range`] where what was written is read as something else, which is
+/// then not to be used.
 pub fn photometric_file(export: &Export, target: ExportFormat) -> Result<PhotometricFile> {
     let written = match target {
         ExportFormat::Ies2002 => write::write(export, Edition::Y2002),

@@ -2,8 +2,8 @@
 
 use super::decode::windows_1252;
 
-/// Text in printable ASCII: letters with marks by their base letters or their usual spelling, controls as blanks, what has no
-/// spelling as `?`; and whether anything but a control was changed.
+/// Text in printable ASCII: letters with marks by their base letters or their usual spelling, controls as
+/// blanks, what has no spelling as `?`; and whether anything but a control was changed.
 pub fn ascii(text: &str) -> (String, bool) {
     convert(text, |c| (' '..='~').contains(&c))
 }

@@ -12,7 +12,8 @@ use std::path::Path;
 /// Larger files are refused: the largest real one has 1.3 MB.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 
-/// Reads a photometric file; a tilt file is looked for beside it. Of several lamp sets (EULUMDAT) the first is taken.
+/// Reads a photometric file; a tilt file is looked for beside it. Of several lamp sets (EULUMDAT) the first
+/// is taken.
 ///
 /// # Errors
 /// [`Kind::Io`] when it cannot be read, `Kind::Limit` beyond `MAX_FILE_BYTES`, and those of [`parse`].
@@ -43,8 +44,8 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Photometry> {
     })
 }
 
-/// The same with a choice of the lamp set, from 1, where tilt files can be had. The error that there is no such set names no
-/// file: it is about who chose.
+/// The same with a choice of the lamp set, from 1, where tilt files can be had. The error that there is no
+/// such set names no file: it is about who chose.
 pub fn parse_with(
     bytes: &[u8],
     name: &str,

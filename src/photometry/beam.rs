@@ -190,10 +190,10 @@ mod tests {
         let expected = 30.0 * (5.0 / 9.0);
         let got = lobe_angle_at_max_deg(&skew, BEAM_SHARE).unwrap();
         assert!((got - expected).abs() < 1e-12, "{got} {expected}");
-        // Maximum at V = 20, H = 10: 100 falling to 0 in 10 degrees of V and 30 of H.
+        // Maximum at V = 20, H = 10: 100 falling to 0 in 10 degrees of V and 30 of H; in another H something else.
         let v = vec![10.0, 20.0, 30.0];
         let flood =
-            Web::new(B, v, vec![-20.0, 10.0, 40.0], vec![0.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0]);
+            Web::new(B, v, vec![-20.0, 10.0, 40.0], vec![0.0, 0.0, 90.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0]);
         let flood = flood.unwrap();
         assert_eq!(flood_angles_deg(&flood, BEAM_SHARE), [Some(30.0), Some(10.0)]);
         assert_eq!(lobe_angle_at_max_deg(&flood, BEAM_SHARE), Some(30.0));

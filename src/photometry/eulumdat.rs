@@ -29,7 +29,8 @@ impl LampSet {
 /// The lines of a EULUMDAT file that LM-63 has no field for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EulumdatHead {
-    /// Ityp: 0 or 1 point source with symmetry about the vertical axis, 2 linear, 3 other. A label: it decides nothing.
+    /// Ityp: 0 or 1 point source with symmetry about the vertical axis, 2 linear, 3 other. A label: it
+    /// decides nothing.
     pub ityp: u32,
     /// Isym, which planes are stored: 0 all, 1 one, 2 C0..C180, 3 C270..C90, 4 C0..C90.
     pub isym: u32,
@@ -39,8 +40,8 @@ pub struct EulumdatHead {
     pub luminaire_size_m: [f64; 3],
     /// Downward flux fraction, per cent, as declared.
     pub downward_fraction_percent: f64,
-    /// Light output ratio of the luminaire (LORL), per cent, as declared; 0 where it is not stated. It is in the intensities
-    /// already.
+    /// Light output ratio of the luminaire (LORL), per cent, as declared; 0 where it is not stated. It is in
+    /// the intensities already.
     pub light_output_ratio_percent: f64,
     /// Conversion factor of the intensities, which is in `multiplier`.
     pub conversion: f64,

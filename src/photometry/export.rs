@@ -1,7 +1,8 @@
-//! What a photometric file is written from: a table of type C with all factors in it, and what stands beside it.
+//! What a photometric file is written from: a table of type C with all factors in it, and what stands beside
+//! it.
 //!
-//! The writers ([`crate::files::lm63`], EULUMDAT) take this and nothing else: a photometric file that is converted and a
-//! far field that was traced come the same way.
+//! The writers ([`crate::files::lm63`], EULUMDAT) take this and nothing else: a photometric file that is
+//! converted and a far field that was traced come the same way.
 
 use super::opening::OpeningShape;
 use super::{Format, LuminousOpening, PhotometricType, Photometry, Revision, Tilt, Web, flux};
@@ -10,12 +11,14 @@ use crate::error::{Diagnostic, Kind, Result};
 /// Labels that state the flux of the luminaire: wrong once its table is scaled.
 const TOTALS: [&str; 2] = ["_TOTALLUMINAIRELUMENS", "TOTALLUMINAIRELUMENS"];
 
-/// A luminaire to be written. [`Export::new`] checks the table; the other fields may be set to anything, and writers say
-/// what their format cannot hold.
+/// A luminaire to be written. [`Export::new`] checks the table; the other fields may be set to anything, and
+/// writers say what their format cannot hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Export {
-    /// Keyword of LM-63 without brackets (empty for a free line) and text, in the order of the file. EULUMDAT has places for
-    /// `MANUFAC`, `TEST`, `LUMINAIRE`, `LUMCAT` and `ISSUEDATE`. A date is the caller's: no writer looks at a clock.
+    /// Keyword of LM-63 without brackets (empty for a free line) and text, in the order of the file. EULUMDAT
+    /// has places for
+    /// `MANUFAC`, `TEST`, `LUMINAIRE`, `LUMCAT` and `ISSUEDATE`. A date is the caller's: no writer looks at a
+    /// clock.
     pub labels: Vec<(String, String)>,
     /// Where the numbers come from.
     pub origin: DataOrigin,
@@ -29,13 +32,17 @@ pub struct Export {
     pub lamp_words: [String; 3],
     /// Luminous opening.
     pub opening: LuminousOpening,
+    /// The luminaire itself, for EULUMDAT: length (along C90-C270) or diameter, width (0 where it is round) and height, m;
+    /// `None`: as the opening.
+    pub luminaire_size_m: Option<[f64; 3]>,
     /// Input power, W; 0 where it is not known.
     pub input_watts: f64,
     /// What was changed on the way here, in words.
     pub notes: Vec<String>,
 }
 
-/// Where the intensities of a file come from: the file generation type of LM-63-2019 (its section 5.13, Table 2).
+/// Where the intensities of a file come from: the file generation type of LM-63-2019 (its section 5.13, Table
+/// 2).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DataOrigin {
     /// A computer simulation: `1.00010`.
@@ -69,7 +76,8 @@ pub struct PhotometricFile {
 }
 
 impl Export {
-    /// A luminaire of this name with this table: absolute photometry, one lamp, a point, no power, no further labels.
+    /// A luminaire of this name with this table: absolute photometry, one lamp, a point, no power, no further
+    /// labels.
     ///
     /// # Errors
     /// [`Kind::Range`] for a table that is not of type C, or that [`Web::new`] refuses.
@@ -88,6 +96,7 @@ impl Export {
             lamps_lm: None,
             lamp_words: Default::default(),
             opening: LuminousOpening { shape: OpeningShape::Point, size_m: [0.0; 3], heights_m: None },
+            luminaire_size_m: None,
             input_watts: 0.0,
             notes: Vec::new(),
         })
@@ -116,6 +125,7 @@ impl Export {
             None => [kind, String::new(), String::new()],
         };
         export.opening = photometry.opening;
+        export.luminaire_size_m = photometry.eulumdat.map(|head| head.luminaire_size_m);
         export.input_watts = photometry.input_watts;
         if photometry.factor() != 1.0 {
             export.multiply(photometry.factor());
@@ -137,10 +147,10 @@ impl Export {
         flux::trapezoid_lm(&self.web.full_grid())
     }
 
-    /// Text of the first label with this keyword (case ignored); `None` where it is blank.
+    /// Text of the first label with this keyword (case ignored) that is not blank.
     pub fn label(&self, keyword: &str) -> Option<&str> {
-        let label = self.labels.iter().find(|(key, _)| key.eq_ignore_ascii_case(keyword));
-        label.map(|(_, text)| text.trim()).filter(|text| !text.is_empty())
+        let labels = self.labels.iter().filter(|(key, _)| key.eq_ignore_ascii_case(keyword));
+        labels.map(|(_, text)| text.trim()).find(|text| !text.is_empty())
     }
 
     /// Scales table and lamps so that the flux (by the trapezoid) is this one, lm. The watts stay.
@@ -181,13 +191,14 @@ impl Export {
         }
     }
 
-    /// Turns the table about its axis: what was at H comes to H + `by_deg`. The opening turns with it by multiples of 90
-    /// degrees.
+    /// Turns the table about its axis: what was at H comes to H + `by_deg`. The opening turns with it by
+    /// multiples of 90 degrees.
     ///
     /// # Errors
     /// [`Kind::Range`] for an angle beyond +-360 degrees.
     pub fn turn(&mut self, by_deg: f64) -> Result<()> {
-        if !(by_deg.abs() <= 360.0) {
+        let is_fit = by_deg.abs() <= 360.0;
+        if !is_fit {
             return Err(Diagnostic::new(
                 Kind::Range,
                 format!("{by_deg} degrees"),
@@ -198,6 +209,12 @@ impl Export {
             return Ok(());
         }
         self.web = self.web.turned(by_deg);
+        if let Some([length, width, height]) = self.luminaire_size_m
+            && width > 0.0
+            && by_deg.rem_euclid(180.0) == 90.0
+        {
+            self.luminaire_size_m = Some([width, length, height]);
+        }
         match self.opening.turned(by_deg) {
             Some(opening) => self.opening = opening,
             None => self.notes.push(format!(

@@ -52,8 +52,8 @@ impl LuminanceTable {
 }
 
 impl LuminousOpening {
-    /// The area of its silhouette in the direction (V, H) of type C, m2; flat shapes shine to both sides. The frame of LM-63:
-    /// length along H = 0, width across.
+    /// The area of its silhouette in the direction (V, H) of type C, m2; flat shapes shine to both sides. The
+    /// frame of LM-63: length along H = 0, width across.
     pub fn projected_m2(&self, vertical_deg: f64, horizontal_deg: f64) -> f64 {
         use OpeningShape::*;
         let [width, length, height] = self.size_m;

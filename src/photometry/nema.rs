@@ -1,4 +1,5 @@
-//! NEMA types of floodlights (ANSI/NEMA FA 1; IES LM-35): classes of the field angle, at 10 % of the largest intensity.
+//! NEMA types of floodlights (ANSI/NEMA FA 1; IES LM-35): classes of the field angle, at 10 % of the largest
+//! intensity.
 
 use super::beam::{FIELD_SHARE, flood_angles_deg, lobe_angle_across_deg, lobe_angle_deg};
 use super::{PhotometricType, Web};
@@ -19,7 +20,8 @@ pub struct NemaType {
 }
 
 impl NemaType {
-    /// Of a table, or why it has none. Both planes must go through the largest intensity: in type C it must be on the axis.
+    /// Of a table, or why it has none. Both planes must go through the largest intensity: in type C it must
+    /// be on the axis.
     pub fn new(web: &Web) -> Result<Self, &'static str> {
         let max = web.max_intensity();
         let (planes, angles) = match web.photometric_type {
@@ -75,7 +77,8 @@ mod tests {
 
     #[test]
     fn planes_go_through_the_maximum() {
-        // Linear from 100 cd at (10, 0) to 0 in 20 degrees of V and 60 of H: a tenth at 18 and 54 degrees to both sides.
+        // Linear from 100 cd at (10, 0) to 0 in 20 degrees of V and 60 of H: a tenth at 18 and 54 degrees to
+        // both sides.
         let candela = vec![0.0, 0.0, 0.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0];
         let flood = Web::new(B, vec![-10.0, 10.0, 30.0], vec![-60.0, 0.0, 60.0], candela).unwrap();
         let nema = NemaType::new(&flood).unwrap();

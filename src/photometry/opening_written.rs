@@ -4,7 +4,8 @@ use super::LuminousOpening;
 use super::opening::OpeningShape;
 
 impl LuminousOpening {
-    /// Width, length and height in metres with the signs of LM-63-2002 (and 2019): what [`Self::from_fields`] reads.
+    /// Width, length and height in metres with the signs of LM-63-2002 (and 2019): what [`Self::from_fields`]
+    /// reads.
     pub fn fields(&self) -> [f64; 3] {
         use OpeningShape::*;
         let [w, l, h] = self.size_m;
@@ -23,8 +24,8 @@ impl LuminousOpening {
         }
     }
 
-    /// EULUMDAT's luminous area, length (across H = 0) and width (along it; 0 where it is round), and its heights towards C0, C90,
-    /// C180 and C270, m; and what it has no shape for.
+    /// EULUMDAT's luminous area, length (across H = 0) and width (along it; 0 where it is round), and its
+    /// heights towards C0, C90, C180 and C270, m; and what it has no shape for.
     pub fn eulumdat_sizes(&self) -> ([f64; 2], [f64; 4], Option<&'static str>) {
         use OpeningShape::*;
         let [w, l, h] = self.size_m;
@@ -49,8 +50,9 @@ impl LuminousOpening {
         }
     }
 
-    /// The opening turned about the axis with its table: what was towards H is towards H + `by_deg`. `None` where it has no shape
-    /// for that: what is not round turns by multiples of 90 degrees, an upright disk by 180.
+    /// The opening turned about the axis with its table: what was towards H is towards H + `by_deg`. `None`
+    /// where it has no shape for that: what is not round turns by multiples of 90 degrees, an upright disk by
+    /// 180.
     pub fn turned(&self, by_deg: f64) -> Option<Self> {
         use OpeningShape::*;
         let is_even = self.heights_m.is_none_or(|heights| heights.iter().all(|&h| h == heights[0]));

@@ -95,8 +95,9 @@ fn lamps(photometry: &Photometry) -> LampFlux {
     }
 }
 
-/// Thousands of lumens that intensities are given for: of the lamps, or in absolute photometry of the luminaire (EULUMDAT: as
-/// its lamp set states; LM-63: by the trapezoid, as given here); `None` where they are 0.
+/// Thousands of lumens that intensities are given for: of the lamps, or in absolute photometry of the
+/// luminaire (EULUMDAT: as its lamp set states; LM-63: by the trapezoid, as given here); `None` where they
+/// are 0.
 pub fn klm(photometry: &Photometry, flux_lm: f64) -> Option<f64> {
     let of_set = photometry.lamp_sets.get(photometry.lamp_set).map(|set| set.flux_lm);
     let lm = match (of_set, lamps(photometry)) {
@@ -104,5 +105,5 @@ pub fn klm(photometry: &Photometry, flux_lm: f64) -> Option<f64> {
         (None, LampFlux::Absolute) => flux_lm,
         (None, LampFlux::Unknown) => 0.0,
     };
-    (lm > 0.0).then(|| 1e-3 * lm)
+    (lm > 0.0).then_some(1e-3 * lm)
 }

@@ -36,11 +36,14 @@ pub struct Summary {
     pub lamps_lm: Option<f64>,
     /// `flux_lm / lamps_lm`.
     pub light_output_ratio: Option<f64>,
-    /// The lamp sets of EULUMDAT.
+    /// The lamp sets of EULUMDAT; not in the record where there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lamp_sets: Vec<LampSet>,
-    /// The one that was taken, from 1; `None` where there are none.
+    /// The one that was taken, from 1; not in the record where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub lamp_set: Option<usize>,
-    /// What only EULUMDAT says.
+    /// What only EULUMDAT says; not in the record of LM-63.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub eulumdat: Option<EulumdatHead>,
     /// Candela multiplier, which is in all fluxes and intensities.
     pub multiplier: f64,
@@ -141,7 +144,8 @@ pub struct Opening {
     pub shape: &'static str,
     /// Width, length, height of the bounding box, m.
     pub size_m: [f64; 3],
-    /// EULUMDAT: luminous heights towards C0, C90, C180 and C270, m.
+    /// EULUMDAT: luminous heights towards C0, C90, C180 and C270, m; not in the record of LM-63.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub heights_m: Option<[f64; 4]>,
 }
 
@@ -230,9 +234,6 @@ mod tests {
             "lamps",
             "lumens_per_lamp",
             "lamps_lm",
-            "lamp_sets",
-            "lamp_set",
-            "eulumdat",
             "light_output_ratio",
             "multiplier",
             "ballast_factor",

@@ -6,8 +6,8 @@ use crate::error::invalid::Interval;
 pub(crate) const TILT_DEG: Interval =
     Interval { low: -180.0, high: 180.0, words: "a mounting tilt from -180 to 180 degrees" };
 
-/// What a file says about it. The factors do not depend on the direction of emission: they are one factor of all intensities, that
-/// of the tilt at which a luminaire is mounted ([`super::Photometry::factor_at_tilt`]).
+/// What a file says about it. The factors do not depend on the direction of emission: they are one factor of
+/// all intensities, that of the tilt at which a luminaire is mounted ([`super::Photometry::factor_at_tilt`]).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tilt {
     /// `TILT=NONE`.

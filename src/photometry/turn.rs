@@ -4,8 +4,9 @@ use super::web::Symmetry;
 use super::{PhotometricType, Web};
 
 impl Web {
-    /// The table with what was at H at H + `by_deg`, type C; others and rotational ones as they are. Planes are joined at 0, where
-    /// one is interpolated if there is none, which leaves the bilinear function as it was.
+    /// The table with what was at H at H + `by_deg`, type C; others and rotational ones as they are. Planes
+    /// are joined at 0, where one is interpolated if there is none, which leaves the bilinear function as it
+    /// was.
     pub fn turned(&self, by_deg: f64) -> Self {
         if self.photometric_type != PhotometricType::C || self.symmetry() == Symmetry::Rotational {
             return self.clone();
@@ -30,7 +31,8 @@ impl Web {
         Self { horizontal_deg, candela: rows.concat(), ..circle }.folded()
     }
 
-    /// A table over 0..360 by the least part of it that stands for the whole, where its planes are mirrored to the last bit.
+    /// A table over 0..360 by the least part of it that stands for the whole, where its planes are mirrored
+    /// to the last bit.
     fn folded(self) -> Self {
         let n_v = self.vertical_deg.len().max(1);
         let row = |i: usize| &self.candela[i * n_v..(i + 1) * n_v];

@@ -1,8 +1,8 @@
 //! Zonal lumens: the flux between two angles from the axis of type C.
 //!
-//! The rule is that of the flux itself ([`super::flux::trapezoid_lm`]): a band between two stored angles has the mean of its
-//! intensities all over it. A zone that ends within a band takes its part by exact solid angle, so that zones that join
-//! add up to the flux.
+//! The rule is that of the flux itself ([`super::flux::trapezoid_lm`]): a band between two stored angles has
+//! the mean of its intensities all over it. A zone that ends within a band takes its part by exact solid
+//! angle, so that zones that join add up to the flux.
 
 use super::flux::{Band, bands};
 use super::unfold::radians;
@@ -63,10 +63,11 @@ fn between_lm(bands: &[Band], from_deg: f64, to_deg: f64) -> f64 {
     bands.iter().map(|band| band.between_lm(radians(from_deg), radians(to_deg))).sum()
 }
 
-/// CIE flux code of a luminaire, percent (CIE 52-1982; EN 13032-2): with F1 to F4 the fluxes within pi/2, pi, 3 pi/2 and 2 pi
-/// steradians around the downward axis (to 41.4, 60, 75.5 and 90 degrees), F the flux and L that of the lamps: F1/F4, F2/F4,
-/// F3/F4, F4/F, F/L. The first three are `None` where nothing goes down, the fourth in the dark, the last without a flux of
-/// lamps; absolute photometry has 100 there. `None` unless the table is of type C.
+/// CIE flux code of a luminaire, percent (CIE 52-1982; EN 13032-2): with F1 to F4 the fluxes within pi/2, pi,
+/// 3 pi/2 and 2 pi steradians around the downward axis (to 41.4, 60, 75.5 and 90 degrees), F the flux and L
+/// that of the lamps: F1/F4, F2/F4, F3/F4, F4/F, F/L. The first three are `None` where nothing goes down, the
+/// fourth in the dark, the last without a flux of lamps; absolute photometry has 100 there. `None` unless the
+/// table is of type C.
 pub fn flux_code(web: &Web, lamps_lm: LampFlux) -> Option<[Option<f64>; 5]> {
     let bands = bands_of(web)?;
     let within = |quarter: f64| {

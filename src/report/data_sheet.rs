@@ -72,3 +72,35 @@ fn luminances(table: &LuminanceTable, photometry: &Photometry) -> Vec<String> {
     };
     [format!("          {head}")].into_iter().chain(table.gamma_deg.iter().map(row)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::photometric;
+
+    fn lines_of(text: &str) -> Vec<String> {
+        let photometry = photometric::parse(text.as_bytes(), "a.ies").unwrap();
+        lines(&photometry, &Summary::new(&photometry))
+    }
+
+    #[test]
+    fn what_goes_up_stands_beside_what_goes_down() {
+        // 100 cd everywhere, from a sphere of 0.2 m: 2 pi 100 (1 - cos 10 degrees) lm to 10 degrees on both sides;
+        // 100 cd over pi 0.01 m2.
+        let all = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 -0.2 -0.2 -0.2\n1 1 0\n0 180\n0\n100 100\n";
+        let lines = lines_of(all);
+        for line in [
+            "in tens                      9.5 lm      0.8 %     0-10 deg          109.1 lm      8.7 %    90-100 deg",
+            "                           109.1 lm      8.7 %    80-90 deg            9.5 lm      0.8 %   170-180 deg",
+            "CIE flux code       25 50 75 50 100",
+            "luminance (cd/m2)                      C0        C45        C90",
+            "                      gamma 85       3183       3183       3183",
+        ] {
+            assert!(lines.iter().any(|l| l == line), "{line}\n{}", lines.join("\n"));
+        }
+        // Of type B neither zones nor a code: the class alone.
+        let flood =
+            lines_of("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 2 2 2 0 0 0\n1 1 0\n-90 90\n-90 90\n1 1 1 1\n");
+        assert_eq!(flood, ["NEMA type                  7 x 7      H x V"]);
+    }
+}

@@ -110,8 +110,9 @@ impl FarFieldStatistics {
             Some(Measured { value, standard_error: error(&|web| of(web, share)) })
         };
         let angles = |share: f64| [angle(lobe_angle_deg, share), angle(lobe_angle_across_deg, share)];
-        let most = (0..table.candela.len())
-            .fold(0, |best, i| if table.candela[i] > table.candela[best] { i } else { best });
+        // Planes that a symmetry makes equal are so but for rounding.
+        let larger = |best: usize, i: usize| table.candela[i] > table.candela[best] * (1.0 + 1e-12);
+        let most = (0..table.candela.len()).fold(0, |best, i| if larger(best, i) { i } else { best });
         let (nodes, planes) = (&table.nodes, table.nodes.planes());
         // Without the rounding of angles that are multiples of a step.
         let widest = |pairs: &mut dyn Iterator<Item = f64>| (1e9 * pairs.fold(0.0, f64::max)).round() / 1e9;

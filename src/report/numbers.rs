@@ -26,6 +26,7 @@ pub fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
             let both = if is_plain { both } else { format!("({both})e{magnitude}") };
             format!("{both} {unit} ({} %)", rounded(100.0 * e / value.abs(), 2))
         }
+        Some(e) if e > 0.0 => format!("0 +- {} {unit}", rounded(e, 2)),
         Some(_) => format!("{} +- 0 {unit}", digits(value)),
         None => format!("{} {unit}", digits(value)),
     }
@@ -106,6 +107,7 @@ mod tests {
         assert_eq!(rounded(0.008_836_9, 2), "0.0088");
         assert_eq!(rounded(18.733, 3), "18.7");
         assert_eq!(with_error(123.456, Some(0.0123), "lm"), "123.456 +- 0.012 lm (0.01 %)");
+        assert_eq!(with_error(0.0, Some(0.0123), "lm"), "0 +- 0.012 lm");
         assert_eq!(with_error(5.0, None, "lx"), "5 lx");
         assert_eq!(with_error(1.479_27e-10, Some(3.52e-14), "lx"), "(1.47927 +- 0.00035)e-10 lx (0.024 %)");
         assert_eq!(with_error(2.530_35e14, Some(1.26e12), "lx"), "(2.530 +- 0.013)e14 lx (0.5 %)");

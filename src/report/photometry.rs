@@ -11,8 +11,8 @@ use crate::photometry::{Format, Photometry, Revision, Summary, Tilt};
 use super::data_sheet;
 use super::numbers::printable;
 
-/// The report for a terminal: one quantity a line, names aligned, units behind the numbers. Without the warnings, which the
-/// command says on stderr. `klm`: thousands of lumens for which the maximum is told, too.
+/// The report for a terminal: one quantity a line, names aligned, units behind the numbers. Without the
+/// warnings, which the command says on stderr. `klm`: thousands of lumens for which the maximum is told, too.
 pub fn text(photometry: &Photometry, summary: &Summary, klm: Option<f64>) -> String {
     let mut out = String::new();
     let mut line = |name: &str, value: String| {

@@ -4,7 +4,8 @@ use crate::photometry::{Photometry, Summary};
 
 use super::numbers::{bare, printable};
 
-/// The candela table of a file as CSV: a row for each V, a column for each H, as they are stored; value x multiplier, divided by
+/// The candela table of a file as CSV: a row for each V, a column for each H, as they are stored; value x
+/// multiplier, divided by
 /// `per`: 1 for candela, the thousands of lumens for candela per 1000 lm.
 pub fn candela_csv(photometry: &Photometry, per: f64) -> String {
     let web = &photometry.web;

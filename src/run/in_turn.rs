@@ -9,9 +9,9 @@ use crate::scene::Scene;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
+use super::kept::check_kept;
 use super::outcome::{Outcome, StoppedBy};
 use super::plan::Plan;
-use super::replicates::check_kept;
 use super::tracer::Tracer;
 
 /// A run whose photons go through other hands, for pictures.

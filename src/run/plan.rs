@@ -7,7 +7,7 @@ use super::algorithm::Algorithm;
 /// Photons of a run that names no number.
 const DEFAULT_PHOTONS: u64 = 1 << 22;
 /// Replicates of a run that names no number.
-const DEFAULT_REPLICATES: u32 = 8;
+pub const DEFAULT_REPLICATES: u32 = 8;
 /// Most photons of a run: 2^48, so that counts and their products have room.
 pub const MAX_PHOTONS: u64 = 1 << 48;
 /// Most replicates.

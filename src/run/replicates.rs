@@ -5,19 +5,16 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::receiver::Receiver;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
 use super::in_turn::trace_by;
+use super::kept::{are_kept, check_kept, counters};
 use super::outcome::{Outcome, StoppedBy};
 use super::plan::Plan;
 use super::tracer::Tracer;
-
-/// Most counters of all replicates together: 2^27 of 8 bytes, a gibibyte.
-const MOST_COUNTERS: u64 = 1 << 27;
 
 /// Photons of the first stage, over all replicates.
 const FIRST_STAGE: u64 = 1 << 13;
@@ -79,50 +76,6 @@ pub fn trace(
 /// made for their number, so that a first part of them is no sample.
 fn together(scene: &Scene, plan: &Plan) -> bool {
     are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
-}
-
-/// Whether there is room for the maps of all replicates.
-pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
-    counters(scene, plan) <= MOST_COUNTERS
-}
-
-/// Counters of all replicates.
-fn counters(scene: &Scene, plan: &Plan) -> u64 {
-    let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
-    let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
-    let (nodes, fine) = kept(scene);
-    (cells + nodes + fine).saturating_mul(u64::from(plan.replicates()))
-}
-
-/// Nodes of far fields and fine cells of spots.
-fn kept(scene: &Scene) -> (u64, u64) {
-    let fine = scene.receivers.iter().filter_map(|receiver| receiver.spot);
-    let nodes = scene.far_fields.iter().map(|field| field.nodes.len() as u64);
-    (nodes.sum(), fine.map(|spot| spot.cells() as u64).sum())
-}
-
-/// That there is room for the far fields and spots of every replicate, which are all kept: their errors need them.
-///
-/// # Errors
-/// More than 2^27 nodes and fine cells.
-pub(super) fn check_kept(scene: &Scene, plan: &Plan) -> Result<()> {
-    let (nodes, fine) = kept(scene);
-    let replicates = plan.replicates();
-    if (nodes + fine).saturating_mul(u64::from(replicates)) <= MOST_COUNTERS {
-        return Ok(());
-    }
-    let (found, required) = if fine == 0 {
-        (
-            format!("{replicates} replicates of {nodes} nodes in far fields, half steps included"),
-            "at most 2^27 nodes in all: fewer replicates, or wider steps",
-        )
-    } else {
-        (
-            format!("{replicates} replicates of {fine} fine cells of spots and {nodes} nodes of far fields"),
-            "at most 2^27 in all: fewer replicates, or fewer receivers with `spot`",
-        )
-    };
-    Err(Diagnostic::new(Kind::Limit, found, required))
 }
 
 /// A replicate as far as it is traced.

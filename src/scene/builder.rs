@@ -193,7 +193,7 @@ impl SceneBuilder {
         for (spec, place) in &self.far_fields {
             match FarField::new(spec, &geometry) {
                 Ok(far_field) => {
-                    nodes += far_field.nodes.len() as u64;
+                    nodes += far_field.nodes.count() as u64;
                     far_fields.push(far_field);
                 }
                 Err(e) => errors.push(e.placed(*place)),

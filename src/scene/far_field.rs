@@ -27,9 +27,10 @@ pub const C_REQUIRED: &str =
 const SYMMETRY_REQUIRED: &str =
     "planes C that the symmetry takes to planes C (0, 90, 180 and 270 among them, where it names them)";
 
-/// The nodes of an angle that was not given: of half the finest step, from which wider ones are made by doubling.
+/// The nodes of an angle that was not given: of half the finest step, from which wider ones are made by doubling. The widest
+/// step divides 90 degrees, so that planes at which symmetries begin are there.
 const FINEST_GAMMA: (f64, u32) = (0.125, 5);
-const FINEST_C: (f64, u32) = (1.25, 4);
+const FINEST_C: (f64, u32) = (1.875, 4);
 /// Of a far field that is the same in all planes these show how far it is not.
 const ROTATIONAL_C: (f64, u32) = (2.5, 1);
 
@@ -71,7 +72,7 @@ impl FarFieldSpec {
         Ok(self)
     }
 
-    /// With nodes at these C (degrees): one number is a step. Without, the widest of 20, 10, 5 and 2.5 degrees is taken,
+    /// With nodes at these C (degrees): one number is a step. Without, the widest of 30, 15, 7.5 and 3.75 degrees is taken,
     /// as for gamma.
     ///
     /// # Errors
@@ -114,7 +115,7 @@ fn steps(step: f64, end: f64, divided: f64) -> Option<Vec<f64>> {
     const FINEST_DEG: f64 = 0.01;
     let (count, parts) = ((end / step).round(), divided / step);
     let divides = step >= FINEST_DEG && (parts - parts.round()).abs() <= WHOLE * parts && parts >= 0.5;
-    divides.then(|| (0..=count as usize).map(|i| end * (i as f64 / count)).collect())
+    divides.then(|| (0..=count as usize).map(|i| end * i as f64 / count).collect())
 }
 
 fn rises(angles: &[f64]) -> bool {
@@ -186,7 +187,7 @@ impl FarField {
             gamma_deg: if given[0] { fine.gamma_deg } else { nodes.gamma_deg },
             c_deg: if given[1] { fine.c_deg } else { nodes.c_deg },
         };
-        if nodes.len() > MOST_NODES {
+        if nodes.count() > MOST_NODES {
             let (rows, planes) = (nodes.gamma_deg.len(), nodes.planes());
             let found =
                 format!("far field \"{}\" of {rows} x {planes} nodes, half steps included", spec.name);
@@ -194,7 +195,7 @@ impl FarField {
         }
         let doublings =
             [(given[0], gamma.1), (given[1], c.1)].map(|(given, most)| if given { 1 } else { most });
-        let table = nodes.thinned([2, 2]);
+        let table = nodes.thinned(doublings.map(|d| 1 << d));
         if (0..table.planes()).any(|plane| table.equal_planes(plane, spec.symmetry).is_none())
             || !has_seams(&table, spec.symmetry)
         {

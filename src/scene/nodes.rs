@@ -18,7 +18,7 @@ pub struct Nodes {
 
 impl Nodes {
     /// Number of nodes, those of a pole counted as often as there are planes.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.gamma_deg.len() * self.c_deg.len()
     }
 

@@ -31,7 +31,7 @@ impl<'s> FarFields<'s> {
     /// Zeros, for replicates of this many photons.
     pub(super) fn new(fields: &'s [FarField], photons: u64) -> Self {
         let [outside, seen] = [0; 2].map(|_| Counts::new(fields.len()));
-        let nodes = fields.iter().map(|field| Counts::new(field.nodes.len())).collect();
+        let nodes = fields.iter().map(|field| Counts::new(field.nodes.count())).collect();
         Self { fields, nodes, outside, seen, one: units_of_a_photon(photons) }
     }
 

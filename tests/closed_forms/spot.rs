@@ -371,26 +371,3 @@ fn spots_that_cannot_be_are_refused_where_they_stand() {
         assert!(text.contains(words) && text.contains("test.toml:"), "{keys}: {text}");
     }
 }
-
-#[test]
-fn draw_for_eyes() {
-    let lens = "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n[[surface]]\nname = \"ball\"\ntype = \"sphere\"\nmaterial = \"glass\"\ncenter = [0, 0, 0]\nradius = 1\n";
-    let plate = rectangle([-0.2, -0.2, -1.45], [0.4, 0.0, 0.0], [0.0, 0.4, 0.0], "")
-        .replace("[32, 32]", "[128, 128]");
-    let s = scene(&beam([0.0, 0.0, 2.0], 0.6, &(lens.to_owned() + &plate)));
-    let of = figures(&s, 8);
-    caustix::plot::spot::encircled("lens", &of).write(std::path::Path::new("/tmp/spot_enc.png")).unwrap();
-    caustix::plot::spot::sections("lens", &of).write(std::path::Path::new("/tmp/spot_sec.png")).unwrap();
-    let plate = rectangle([-0.4, -0.3, 0.0], [1.0, 0.0, 0.0], [0.0, 0.8, 0.0], "spot_at = [0.45, 0.4]\n");
-    let s = scene(&beam([0.05, 0.1, 1.0], 0.2, &plate));
-    let sp = spot(&s, Sequence::SobolOwen, (1 << 9, 8), 5);
-    println!("{}", sp.text());
-    println!("{}", json(&sp).unwrap());
-    let of = sp.figures.unwrap();
-    caustix::plot::spot::encircled("disc of light", &of)
-        .write(std::path::Path::new("/tmp/spot_enc2.png"))
-        .unwrap();
-    caustix::plot::spot::sections("disc of light", &of)
-        .write(std::path::Path::new("/tmp/spot_sec2.png"))
-        .unwrap();
-}

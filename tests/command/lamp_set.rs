@@ -51,5 +51,6 @@ fn photometry_and_sample_take_the_set_that_is_asked_for() {
         1,
         &["two.ldt: found lamp set 3 of 2 lamp sets", "required: 1 to 2"],
     );
-    s.is_told("photometry two.ldt --lamp-set 0", 2, &["--lamp-set", "a whole number from 1 to 1000"]);
+    s.is_told("photometry two.ldt --lamp-set 0", 1, &["found lamp set 0 of 2 lamp sets", "required: 1 to 2"]);
+    s.is_told("photometry two.ldt --lamp-set x", 2, &["--lamp-set", "a whole number from 1 to 1000"]);
 }

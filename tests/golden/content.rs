@@ -10,6 +10,13 @@ use sha2::{Digest, Sha256};
 use crate::book::Parts;
 use crate::openexr;
 
+/// The lines of a photometric file that say neither the version nor the scene's hash.
+fn photometric(text: &str) -> String {
+    let is_kept =
+        |line: &&str| !line.contains("simulated by caustix") && !line.starts_with("[_SCENE_SHA256]");
+    text.lines().filter(is_kept).collect::<Vec<_>>().join("\n")
+}
+
 /// Keys of JSON that another run, machine or version may fill otherwise.
 const KEYS_LEFT_OUT: [&str; 11] = [
     "caustix",
@@ -54,6 +61,7 @@ pub fn parts(path: &Path) -> Option<Parts> {
         // After the comment, which names the version and the scene's hash.
         "vtp" => Some(vec![("body".into(), hash(text().split_once("-->").unwrap().1.as_bytes()))]),
         "png" => Some(png(path)),
+        "ies" | "ldt" => Some(vec![("text".into(), hash(photometric(&text()).as_bytes()))]),
         "svg" => Some(vec![("text".into(), hash(&read()))]),
         // compare.md: its tables are those of compare.csv, with times between them; photons as saved: a
         // binary file.

@@ -1,4 +1,5 @@
-//! EULUMDAT from formulas whose flux and intensities are known exactly: symmetries, lamp sets, everything that programs do to it.
+//! EULUMDAT from formulas whose flux and intensities are known exactly: symmetries, lamp sets, everything
+//! that programs do to it.
 
 use caustix::error::{Diagnostic, Kind};
 use caustix::files::photometric;

@@ -1,4 +1,5 @@
-//! Real EULUMDAT files against numbers of another reader, and against the LM-63 files that their makers wrote of the same lamps.
+//! Real EULUMDAT files against numbers of another reader, and against the LM-63 files that their makers wrote
+//! of the same lamps.
 
 use caustix::files::photometric;
 use caustix::photometry::{Format, Photometry, Summary};

@@ -1,4 +1,5 @@
-//! EULUMDAT files from formulas: every line has its number in the format, so that a test can change any of them.
+//! EULUMDAT files from formulas: every line has its number in the format, so that a test can change any of
+//! them.
 
 use std::f64::consts::PI;
 

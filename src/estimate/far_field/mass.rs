@@ -51,7 +51,7 @@ impl Mass {
     }
 
     /// Entries of a vector.
-    pub fn len(&self) -> usize {
+    pub fn entries(&self) -> usize {
         self.is_pole.len() * self.planes
     }
 
@@ -69,9 +69,9 @@ impl Mass {
             let (x, along) = (&x[row * planes..][..planes], &mut along[row * planes..][..planes]);
             let at = |plane: usize| if self.is_pole[row] { x[0] } else { x[plane] };
             let (mut before, mut coupling) = (at(planes - 1), self.c.1[planes - 1]);
-            for plane in 0..planes {
+            for (plane, along) in along.iter_mut().enumerate() {
                 let after = if plane + 1 == planes { at(0) } else { at(plane + 1) };
-                along[plane] = coupling * before + self.c.0[plane] * at(plane) + self.c.1[plane] * after;
+                *along = coupling * before + self.c.0[plane] * at(plane) + self.c.1[plane] * after;
                 (before, coupling) = (at(plane), self.c.1[plane]);
             }
         }
@@ -113,12 +113,13 @@ impl Mass {
             };
             self.gamma.0[row] * (around + again)
         };
-        (0..self.len()).map(|entry| if self.is_node(entry) { of(entry) } else { 0.0 }).collect()
+        (0..self.entries()).map(|entry| if self.is_node(entry) { of(entry) } else { 0.0 }).collect()
     }
 
     /// The integral of each node's hat, sr; they sum to the solid angle of the table.
     pub fn solid_angles_sr(&self) -> Vec<f64> {
-        let ones: Vec<f64> = (0..self.len()).map(|entry| f64::from(u8::from(self.is_node(entry)))).collect();
+        let ones: Vec<f64> =
+            (0..self.entries()).map(|entry| f64::from(u8::from(self.is_node(entry)))).collect();
         self.apply(&ones)
     }
 }
@@ -177,7 +178,7 @@ mod tests {
             let [first, last] = ends.map(f64::to_radians);
             let all = TAU * (first.cos() - last.cos());
             assert!((solid.iter().sum::<f64>() - all).abs() < 1e-13 * all);
-            for entry in (0..mass.len()).filter(|entry| mass.is_node(*entry)) {
+            for entry in (0..mass.entries()).filter(|entry| mass.is_node(*entry)) {
                 let (row, plane) = (entry / nodes.planes(), entry % nodes.planes());
                 let is_there =
                     |i: usize, j: usize| i == row && (nodes.is_pole(row) || j % nodes.planes() == plane);
@@ -203,20 +204,21 @@ mod tests {
     fn the_matrix_is_symmetric_and_knows_its_diagonal() {
         for nodes in nodes() {
             let mass = Mass::new(&nodes);
-            let unit = |k: usize| (0..mass.len()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
-            let columns: Vec<_> = (0..mass.len())
-                .map(|k| if mass.is_node(k) { mass.apply(&unit(k)) } else { vec![0.0; mass.len()] })
+            let unit =
+                |k: usize| (0..mass.entries()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+            let columns: Vec<_> = (0..mass.entries())
+                .map(|k| if mass.is_node(k) { mass.apply(&unit(k)) } else { vec![0.0; mass.entries()] })
                 .collect();
             let diagonal = mass.diagonal();
-            for i in 0..mass.len() {
+            for i in 0..mass.entries() {
                 assert!(
                     (columns[i][i] - diagonal[i]).abs() < 1e-14,
                     "{i}: {} {}",
                     columns[i][i],
                     diagonal[i]
                 );
-                for j in 0..i {
-                    assert!((columns[i][j] - columns[j][i]).abs() < 1e-15, "{i} {j}");
+                for (j, column) in columns.iter().enumerate().take(i) {
+                    assert!((columns[i][j] - column[i]).abs() < 1e-15, "{i} {j}");
                 }
             }
         }

@@ -121,23 +121,23 @@ impl Levels<'_> {
     fn fit(&self, doublings: [u32; 2], symmetry: Symmetry) -> Fit {
         let nodes = self.field.nodes.thinned(doublings.map(|d| 1 << d));
         let mass = Mass::new(&nodes);
-        let replicates: Vec<_> = self
+        let replicates: Vec<Replicate> = self
             .counted
             .par_iter()
             .map(|b| {
                 let b = averaged(&nodes, &widened(&self.field.nodes, b, doublings).1, symmetry);
                 let c = solve(&mass, &b);
-                (b, c)
+                Replicate { b, c }
             })
             .collect();
-        let sum = |of: fn(&(Vec<f64>, Vec<f64>)) -> &Vec<f64>| {
-            let mut sum = vec![0.0; mass.len()];
+        let sum = |of: fn(&Replicate) -> &Vec<f64>| {
+            let mut sum = vec![0.0; mass.entries()];
             for replicate in &replicates {
                 sum.iter_mut().zip(of(replicate)).for_each(|(sum, x)| *sum += x);
             }
             sum
         };
-        let (b, c) = (sum(|r| &r.0), sum(|r| &r.1));
+        let (b, c) = (sum(|r| &r.b), sum(|r| &r.c));
         Fit { nodes, mass, b, c, replicates }
     }
 
@@ -156,7 +156,10 @@ impl Levels<'_> {
                 }
                 let mut finer = at;
                 finer[angle] -= 1;
-                self.fit(finer, self.field.symmetry).energy() - here.energy() > here.noise()
+                // What chance alone would show no more often than once in some hundreds.
+                const ERRORS: f64 = 3.0;
+                let (gain, error) = self.fit(finer, self.field.symmetry).energy_beyond(&here);
+                gain > here.noise() && gain > ERRORS * error
             };
             let gains = [gains(0), gains(1)];
             if gains == [false; 2] {
@@ -175,7 +178,20 @@ struct Fit {
     b: Vec<f64>,
     c: Vec<f64>,
     /// Of each: what it adds to them.
-    replicates: Vec<(Vec<f64>, Vec<f64>)>,
+    replicates: Vec<Replicate>,
+}
+
+/// What a replicate adds to the sums and values.
+struct Replicate {
+    b: Vec<f64>,
+    c: Vec<f64>,
+}
+
+impl Replicate {
+    /// The integral of the square of what it adds.
+    fn energy(&self) -> f64 {
+        dot(&self.b, &self.c)
+    }
 }
 
 impl Fit {
@@ -187,14 +203,14 @@ impl Fit {
     /// replicates of the product of their tables, which is unbiased.
     fn energy(&self) -> f64 {
         let r = self.count();
-        let own: f64 = self.replicates.iter().map(|(b, c)| dot(b, c)).sum();
+        let own: f64 = self.replicates.iter().map(Replicate::energy).sum();
         r / (r - 1.0) * (dot(&self.b, &self.c) - own)
     }
 
     /// What noise adds to it: the integral of the variance.
     fn noise(&self) -> f64 {
         let r = self.count();
-        let own: f64 = self.replicates.iter().map(|(b, c)| dot(b, c)).sum();
+        let own: f64 = self.replicates.iter().map(Replicate::energy).sum();
         r / (r - 1.0) * (own - dot(&self.b, &self.c) / r)
     }
 
@@ -203,9 +219,9 @@ impl Fit {
         let without = |replicate: usize| {
             let of = |fit: &Self| {
                 let r = fit.count() - 1.0;
-                let (b, c) = &fit.replicates[replicate];
-                let rest = dot(&fit.b, &fit.c) - 2.0 * dot(b, &fit.c) + dot(b, c);
-                let own: f64 = fit.replicates.iter().map(|(b, c)| dot(b, c)).sum::<f64>() - dot(b, c);
+                let one = &fit.replicates[replicate];
+                let rest = dot(&fit.b, &fit.c) - 2.0 * dot(&one.b, &fit.c) + one.energy();
+                let own: f64 = fit.replicates.iter().map(Replicate::energy).sum::<f64>() - one.energy();
                 // Without one of R replicates the rest stand for (R - 1) / R of the light.
                 let scale = (fit.count() / r) * (fit.count() / r);
                 scale * r / (r - 1.0).max(1.0) * (rest - own)
@@ -227,21 +243,21 @@ impl Fit {
         let of = |entry: usize| {
             let mean = self.c[entry] / r;
             let squares: f64 =
-                self.replicates.iter().map(|(_, c)| (c[entry] - mean) * (c[entry] - mean)).sum();
+                self.replicates.iter().map(|one| (one.c[entry] - mean) * (one.c[entry] - mean)).sum();
             let spread = (r / (r - 1.0) * squares).sqrt();
             let hits = self.b[entry] / photon_lm;
             let fewest =
                 if hits < FEWEST_HITS as f64 { (hits + 1.0).sqrt() * photon_lm / solid[entry] } else { 0.0 };
             spread.max(fewest)
         };
-        let all = (0..self.mass.len()).map(|e| if self.mass.is_node(e) { of(e) } else { 0.0 }).collect();
+        let all = (0..self.mass.entries()).map(|e| if self.mass.is_node(e) { of(e) } else { 0.0 }).collect();
         self.spread_over_poles(all)
     }
 
     /// The tables of the replicates, each as if it were all.
     fn each(&self) -> Vec<Vec<f64>> {
         let r = self.count();
-        let of = |(_, c): &(Vec<f64>, Vec<f64>)| self.spread_over_poles(c.iter().map(|c| r * c).collect());
+        let of = |one: &Replicate| self.spread_over_poles(one.c.iter().map(|c| r * c).collect());
         self.replicates.iter().map(of).collect()
     }
 

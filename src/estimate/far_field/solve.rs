@@ -15,7 +15,7 @@ const RESIDUAL: f64 = 1e-15;
 
 /// c with M c = b.
 pub fn solve(mass: &Mass, b: &[f64]) -> Vec<f64> {
-    let free: Vec<bool> = (0..mass.len()).map(|entry| mass.is_node(entry)).collect();
+    let free: Vec<bool> = (0..mass.entries()).map(|entry| mass.is_node(entry)).collect();
     solve_free(mass, &mass.diagonal(), b, &free)
 }
 
@@ -58,10 +58,10 @@ fn solve_free(mass: &Mass, diagonal: &[f64], b: &[f64], free: &[bool]) -> Vec<f6
 pub fn solve_positive(mass: &Mass, b: &[f64]) -> (Vec<f64>, usize) {
     let (diagonal, m) = (mass.diagonal(), mass.solid_angles_sr());
     let sum: f64 = b.iter().sum();
-    let mut free: Vec<bool> = (0..mass.len()).map(|entry| mass.is_node(entry)).collect();
+    let mut free: Vec<bool> = (0..mass.entries()).map(|entry| mass.is_node(entry)).collect();
     let nodes = free.iter().filter(|f| **f).count();
-    if !(sum > 0.0) {
-        return (vec![0.0; mass.len()], 0);
+    if sum <= 0.0 {
+        return (vec![0.0; mass.entries()], 0);
     }
     // A value or a gradient this far on the wrong side is rounding.
     let largest =
@@ -110,7 +110,7 @@ mod tests {
 
     /// A beam that is narrow for the grid: all on two nodes, and noise elsewhere.
     fn narrow(mass: &Mass) -> Vec<f64> {
-        let mut b = vec![0.0; mass.len()];
+        let mut b = vec![0.0; mass.entries()];
         (b[0], b[8], b[9]) = (1.0, 0.3, 0.1);
         b[60] = 1e-3;
         b
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn a_table_comes_back() {
         let mass = mass();
-        let c: Vec<f64> = (0..mass.len())
+        let c: Vec<f64> = (0..mass.entries())
             .map(|i| if mass.is_node(i) { 1.0 + ((i * 37) % 11) as f64 } else { 0.0 })
             .collect();
         let again = solve(&mass, &mass.apply(&c));
@@ -152,8 +152,8 @@ mod tests {
     #[test]
     fn nothing_gives_nothing_and_what_is_positive_stays() {
         let mass = mass();
-        assert_eq!(solve_positive(&mass, &vec![0.0; mass.len()]), (vec![0.0; mass.len()], 0));
-        let c: Vec<f64> = (0..mass.len()).map(|i| f64::from(u8::from(mass.is_node(i)))).collect();
+        assert_eq!(solve_positive(&mass, &vec![0.0; mass.entries()]), (vec![0.0; mass.entries()], 0));
+        let c: Vec<f64> = (0..mass.entries()).map(|i| f64::from(u8::from(mass.is_node(i)))).collect();
         let (again, held) = solve_positive(&mass, &mass.apply(&c));
         assert!(held == 0 && again.iter().zip(&c).all(|(a, b)| (a - b).abs() < 1e-12));
     }

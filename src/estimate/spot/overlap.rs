@@ -2,7 +2,7 @@
 
 /// Area common to a circle about the origin and a rectangle between these sides.
 pub fn area_in_circle(radius: f64, [x0, x1]: [f64; 2], [y0, y1]: [f64; 2]) -> f64 {
-    if !(radius > 0.0) {
+    if radius <= 0.0 {
         return 0.0;
     }
     let (x0, x1) = (x0.clamp(-radius, radius), x1.clamp(-radius, radius));

@@ -3,11 +3,13 @@
 use super::Said;
 use super::number::Number;
 
-/// Angles nearer than this to a multiple of 90 degrees are taken for it: the ranges of the standard begin and end there,
-/// and what a range stands for hangs on its ends. (A little more than 0.001, since 180.001 - 180 is.)
+/// Angles nearer than this to a multiple of 90 degrees are taken for it: the ranges of the standard begin and
+/// end there, and what a range stands for hangs on its ends. (A little more than 0.001, since 180.001 - 180
+/// is.)
 const NOISE_DEG: f64 = 1.000_001e-3;
 
-/// Puts angles within 1e-3 degrees of a multiple of 90 on it, unless the list has that multiple too; what to say of the first.
+/// Puts angles within 1e-3 degrees of a multiple of 90 on it, unless the list has that multiple too; what to
+/// say of the first.
 pub(crate) fn snap(name: &str, list: &mut [Number<'_>]) -> Option<Said> {
     let mut said = None;
     for i in 0..list.len() {

@@ -17,7 +17,8 @@ pub(crate) const MAX_FACTOR: f64 = 1e6;
 /// Share of the maximum that passes for measurement noise: negative intensities, planes that should be equal.
 const NOISE: f64 = 1e-3;
 
-/// Distance of the two integrals of one table that is worth a warning: of 8 187 real files 14 exceed it, by up to 6.2 %.
+/// Distance of the two integrals of one table that is worth a warning: of 8 187 real files 14 exceed it, by
+/// up to 6.2 %.
 const TWO_INTEGRALS: f64 = 1e-2;
 
 /// Intensities as they are read: times the multiplier, slightly negative ones 0.
@@ -73,8 +74,8 @@ impl<'a> Candela<'a> {
     }
 }
 
-/// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there. (Of H = -180
-/// and H = 180 the latter is kept.)
+/// H = 0 and H = 360 are one plane. Where a file gives two, both are kept, and the web has a step there. (Of
+/// H = -180 and H = 180 the latter is kept.)
 pub(crate) fn seam(
     photometric_type: PhotometricType,
     candela: &[f64],
@@ -95,7 +96,8 @@ pub(crate) fn seam(
     })
 }
 
-/// At a pole all planes have one direction, and one intensity. Where a file gives several, the web has all of them there.
+/// At a pole all planes have one direction, and one intensity. Where a file gives several, the web has all of
+/// them there.
 pub(crate) fn poles(web: &Web, [vertical, horizontal]: [&[Number<'_>]; 2]) -> Vec<Said> {
     let n_v = vertical.len();
     let is_b = web.photometric_type == PhotometricType::B;

@@ -1,4 +1,5 @@
-//! What the readers of photometric files share: numbers with their places, angles put right, the checks of a table.
+//! What the readers of photometric files share: numbers with their places, angles put right, the checks of a
+//! table.
 
 pub mod angles;
 pub mod checks;

@@ -5,8 +5,8 @@ use crate::error::{Diagnostic, Kind};
 use crate::files::candela::checks::two_integrals;
 use crate::photometry::{Photometry, Web, flux};
 
-/// Distance of the table's flux from lumens x light output ratio that is worth a warning: of real files all but hand-written ones
-/// are within 4.4 %.
+/// Distance of the table's flux from lumens x light output ratio that is worth a warning: of real files all
+/// but hand-written ones are within 4.4 %.
 const RATIO_TOLERANCE: f64 = 0.05;
 
 /// More lumens in the table than this for 1000 lm of the lamps are no error of measurement.

@@ -122,7 +122,8 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// A number that decides nothing: a blank line is `otherwise`, and so is, with a warning, what does not fit.
+    /// A number that decides nothing: a blank line is `otherwise`, and so is, with a warning, what does not
+    /// fit.
     pub fn tolerated(
         &mut self,
         what: &str,

@@ -2,6 +2,7 @@
 
 use super::fields::{Field, Fields, value};
 use crate::error::{Diagnostic, Kind, Result};
+use crate::files::excerpt::quoted;
 use crate::photometry::LampSet;
 
 /// Lamp sets that are read at most: the format has 20.
@@ -10,8 +11,9 @@ pub const MAX_LAMP_SETS: usize = 1000;
 /// Lines of a set.
 const LINES: usize = 6;
 
-/// Places among them of what must be a number.
-const NUMBERS: [usize; 3] = [0, 2, 5];
+/// Places among them of what must be a number: lamps, lumens, watts.
+const NUMBERS: [usize; 3] = [0, LUMENS, 5];
+const LUMENS: usize = 2;
 
 /// The lamp sets, and which of them is taken.
 pub(super) struct Lamps {
@@ -47,19 +49,14 @@ pub(super) fn read(fields: &mut Fields<'_>, lamp_set: Option<usize>) -> Result<L
     }
     let by_set = |set: usize, line: usize| lines[set * LINES + line];
     let by_field = |set: usize, line: usize| lines[line * count + set];
-    let sets = if !fits(count, by_set) && fits(count, by_field) {
-        let hint = "read so";
-        fields.warn(
-            written.offset,
-            Kind::Syntax,
-            "lamp sets field by field",
-            "lamp sets one after the other",
-            hint,
-        );
-        all(fields, count, by_field)?
-    } else {
-        all(fields, count, by_set)?
-    };
+    let is_by_field = !fits(count, by_set) && fits(count, by_field);
+    if is_by_field {
+        let required = "lamp sets one after the other";
+        fields.warn(written.offset, Kind::Syntax, "lamp sets field by field", required, "read so");
+    }
+    let at = |set, line| if is_by_field { by_field(set, line) } else { by_set(set, line) };
+    let sets =
+        (0..count).map(|set| one(fields, set + 1, |line| at(set, line))).collect::<Result<Vec<_>>>()?;
     let chosen = lamp_set.map_or(0, |number| number.saturating_sub(1)).min(count.saturating_sub(1));
     let lamps = Lamps { sets, chosen };
     match lamps.taken() {
@@ -68,11 +65,10 @@ pub(super) fn read(fields: &mut Fields<'_>, lamp_set: Option<usize>) -> Result<L
             fields.warn(written.offset, Kind::Missing, "0 lamp sets", "1 or more", hint);
         }
         Some(set) if set.flux_lm == 0.0 => {
-            let line =
-                (0..LINES).map(|line| by_set(chosen, line)).nth(2).map_or(written.offset, |f| f.offset);
             let found = format!("0 lm of lamp set {}, of which the intensities are a share", chosen + 1);
             let d = Diagnostic::new(Kind::Range, found, "lumens above 0");
-            return Err(fields.place(line, d.hint("in absolute photometry it is the flux of the luminaire")));
+            let d = d.hint("in absolute photometry it is the flux of the luminaire");
+            return Err(fields.place(at(chosen, LUMENS).offset, d));
         }
         Some(_) if count > 1 && lamp_set.is_none() => {
             let d = Diagnostic::new(
@@ -108,14 +104,6 @@ fn fits<'a>(count: usize, at: impl Fn(usize, usize) -> Field<'a>) -> bool {
     (0..count).all(|set| NUMBERS.iter().all(|&line| number(at(set, line))))
 }
 
-fn all<'a>(
-    fields: &mut Fields<'a>,
-    count: usize,
-    at: impl Fn(usize, usize) -> Field<'a>,
-) -> Result<Vec<LampSet>> {
-    (0..count).map(|set| one(fields, set + 1, |line| at(set, line))).collect()
-}
-
 fn one<'a>(fields: &mut Fields<'a>, set: usize, at: impl Fn(usize) -> Field<'a>) -> Result<LampSet> {
     let what = |quantity: &str| format!("{quantity} of lamp set {set}");
     let count = fields.number_of(at(0), &what("number of lamps"))?;
@@ -130,7 +118,7 @@ fn one<'a>(fields: &mut Fields<'a>, set: usize, at: impl Fn(usize) -> Field<'a>)
             hint,
         );
     }
-    let flux = fields.number_of(at(2), &what("lumens"))?;
+    let flux = fields.number_of(at(LUMENS), &what("lumens"))?;
     if flux.value < 0.0 {
         return fields.refuse(&flux, Kind::Range, &what("lumens"), "0 or more");
     }
@@ -149,7 +137,7 @@ fn watts(fields: &mut Fields<'_>, field: Field<'_>, what: &str) -> f64 {
     let word = field.text.split_whitespace().next().unwrap_or_default();
     let watts = value(word).filter(|&watts| watts >= 0.0);
     if watts.is_none() && !word.is_empty() {
-        let found = format!("{what} {}", crate::files::excerpt::quoted(field.text));
+        let found = format!("{what} {}", quoted(field.text));
         fields.warn(field.offset, Kind::Range, &found, "0 or more", "read as 0");
     }
     watts.unwrap_or(0.0)

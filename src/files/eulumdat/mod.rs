@@ -1,8 +1,9 @@
 //! Reader of EULUMDAT files (.ldt).
 //!
-//! One field a line, no keywords, no version: what a line means hangs on its number, and on the counts before it. So a line that
-//! is missing or too many shifts all that follow, and is found by what they must hold: counts against lists, angles that rise, the
-//! end of the file. docs/PHOTOMETRY.md lists what is read, tolerated and refused.
+//! One field a line, no keywords, no version: what a line means hangs on its number, and on the counts before
+//! it. So a line that is missing or too many shifts all that follow, and is found by what they must hold:
+//! counts against lists, angles that rise, the end of the file. docs/PHOTOMETRY.md lists what is read,
+//! tolerated and refused.
 //!
 //! ```text
 //!  1      company
@@ -35,8 +36,8 @@ pub(super) use lamps::told;
 /// Lumens for which a file states its intensities.
 const PER_LM: f64 = 1000.0;
 
-/// Reads the text of a file; messages have line and column, and no file. Of several lamp sets the one of this number, from 1, is
-/// taken; the first where there is no such set, which the caller refuses.
+/// Reads the text of a file; messages have line and column, and no file. Of several lamp sets the one of this
+/// number, from 1, is taken; the first where there is no such set, which the caller refuses.
 pub(super) fn parse_text(text: &str, lamp_set: Option<usize>) -> Result<Photometry> {
     let mut fields = Fields::new(text);
     let head = head::read(&mut fields)?;
@@ -86,7 +87,8 @@ pub(super) fn parse_text(text: &str, lamp_set: Option<usize>) -> Result<Photomet
     Ok(photometry)
 }
 
-/// A comma is a decimal sign here. Where the same file has points, too, it may have been meant to part thousands.
+/// A comma is a decimal sign here. Where the same file has points, too, it may have been meant to part
+/// thousands.
 fn warn_about_signs(fields: &mut Fields<'_>) {
     if let [Some(_), Some(comma)] = fields.signs {
         let found = format!("{} in a file that has decimal points, too", quoted(comma.text));

@@ -28,8 +28,8 @@ impl<'a> Stream<'a> {
         Self { lines, rest: (0, ""), is_begun: false }
     }
 
-    /// The next number or what stands in its place. Text behind a number (`90 deg`) is passed over: words without a digit that
-    /// are no `nan` or `inf`.
+    /// The next number or what stands in its place. Text behind a number (`90 deg`) is passed over: words
+    /// without a digit that are no `nan` or `inf`.
     pub fn next(&mut self) -> Next<'a> {
         loop {
             let (offset, line) = self.rest;

@@ -116,7 +116,8 @@ fn numbers<'a>(
     (0..n).map(|i| stream.number(fields, || format!("{what} {} of {n}", i + 1))).collect()
 }
 
-/// All C angles must rise within the circle, also where their planes have no values: a line too many or too few shows here.
+/// All C angles must rise within the circle, also where their planes have no values: a line too many or too
+/// few shows here.
 fn rising(fields: &Fields<'_>, c: &[Number<'_>]) -> Result<()> {
     if let Some(bad) = c.iter().find(|n| !(0.0..=360.0).contains(&n.value)) {
         return fields.refuse(bad, Kind::Range, "C angle", "0 to 360 degrees");

@@ -8,20 +8,20 @@ use crate::photometry::export::{Export, PhotometricFile};
 use crate::photometry::web::Symmetry;
 use crate::photometry::zones::ZonalLumens;
 
-/// Characters that a line of text has room for: company, report, name, number and date; the kind of lamps; their colour; their
-/// rendering.
+/// Characters that a line of text has room for: company, report, name, number and date; the kind of lamps;
+/// their colour; their rendering.
 const TEXT: usize = 78;
 const LAMP_WORDS: [usize; 3] = [24, 16, 6];
 
-/// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are written as 0. Direct
-/// ratios are 0: not stated.
+/// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are
+/// written as 0. Direct ratios are 0: not stated.
 ///
 /// # Errors
 /// [`Kind::Range`] for a table without light, which has no candela per 1000 lm.
 pub fn write(export: &Export) -> Result<PhotometricFile> {
     let flux_lm = export.flux_lm();
     let lamps_lm = rounded(export.lamps_lm.unwrap_or(flux_lm));
-    if !(lamps_lm > 0.0) {
+    if lamps_lm.is_nan() || lamps_lm <= 0.0 {
         let required = "some light, or lamps with lumens: EULUMDAT has candela per 1000 lm of them";
         return Err(Diagnostic::new(Kind::Range, "a flux of 0 lm", required));
     }
@@ -92,7 +92,8 @@ impl Planes {
             .chain(&mut circle.horizontal_deg)
             .for_each(|angle| *angle = rounded(*angle));
         let c_deg = circle.horizontal_deg[..mc].to_vec();
-        // Planes at 90 and 270 a quarter and three quarters through the list: else the format cannot say where it begins.
+        // Planes at 90 and 270 a quarter and three quarters through the list: else the format cannot say
+        // where it begins.
         let has_quarters = mc % 4 == 0 && c_deg[mc / 4] == 90.0 && c_deg[3 * mc / 4] == 270.0;
         let (isym, stored): (u32, Vec<usize>) = match web.symmetry() {
             Symmetry::Rotational => (1, vec![0]),
@@ -148,12 +149,13 @@ impl FieldLines {
         self.line(bytes.trim_ascii());
     }
 
-    /// The luminaire, of which nothing but the opening is known, and the opening; mm.
+    /// The luminaire, as its opening where nothing else is known of it, and the opening; mm.
     fn sizes(&mut self, export: &Export) {
         let (area_m, heights_m, note) = export.opening.eulumdat_sizes();
         self.notes.extend(note.map(str::to_owned));
         let height_m = heights_m.iter().copied().fold(0.0, f64::max);
-        for metres in [area_m.as_slice(), &[height_m], &area_m, &heights_m].concat() {
+        let luminaire_m = export.luminaire_size_m.unwrap_or([area_m[0], area_m[1], height_m]);
+        for metres in [luminaire_m.as_slice(), &area_m, &heights_m].concat() {
             self.number(1e3 * metres);
         }
     }
@@ -205,11 +207,14 @@ mod tests {
             for lamps_lm in [None, Some(777.7)] {
                 let mut export = Export::new("a", web.clone()).unwrap();
                 export.lamps_lm = lamps_lm;
+                export.luminaire_size_m = Some([1.5, 0.25, 0.125]);
                 let written = write(&export).unwrap();
                 assert_eq!(written.notes, [""; 0]);
                 let read = photometric::parse(&written.bytes, "a.ldt").unwrap();
                 assert_eq!((read.format, read.factor()), (Format::Eulumdat, 1.0));
-                assert_eq!(read.eulumdat.unwrap().isym, isym, "{:?}", web.horizontal_deg);
+                let head = read.eulumdat.unwrap();
+                assert_eq!(head.isym, isym, "{:?}", web.horizontal_deg);
+                assert_eq!(head.luminaire_size_m, [1.5, 0.25, 0.125]);
                 assert_eq!(read.lamps_lm(), lamps_lm);
                 let (is, was) = (read.web.over_circle(), web.over_circle());
                 assert_eq!(is.vertical_deg, written.table.vertical_deg);

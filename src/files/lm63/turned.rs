@@ -4,9 +4,9 @@ use crate::files::candela::Said;
 use crate::files::candela::number::Number;
 use crate::photometry::PhotometricType;
 
-/// Planes of type C that are counted from -180 to 180, in the order of 0..360: for each, the place in the file that it
-/// had, and its angle. Of -180 and 180, which are one plane, the latter; 0 closes the circle. `None` where no angle is
-/// negative, or they don't go round.
+/// Planes of type C that are counted from -180 to 180, in the order of 0..360: for each, the place in the
+/// file that it had, and its angle. Of -180 and 180, which are one plane, the latter; 0 closes the circle.
+/// `None` where no angle is negative, or they don't go round.
 pub(super) fn turned(
     photometric_type: PhotometricType,
     list: &[Number],

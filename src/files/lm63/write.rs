@@ -24,7 +24,8 @@ const LABEL_COLUMNS: usize = 254;
 /// Characters of a line of numbers: what all editions allow.
 const NUMBER_COLUMNS: usize = 130;
 
-/// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are written as 0.
+/// The bytes of a file. Intensities have nine significant digits; those below 1e-12 of the largest are
+/// written as 0.
 pub fn write(export: &Export, edition: Edition) -> PhotometricFile {
     let mut notes = Vec::new();
     let web = stored(export.web(), &mut notes);
@@ -51,7 +52,8 @@ fn rows(web: &Web) -> impl Iterator<Item = &[f64]> {
     web.candela.chunks_exact(web.vertical_deg.len().max(1))
 }
 
-/// The table by the planes that these editions have: 0 alone, 0..90, 0..180, or the whole circle with both its ends.
+/// The table by the planes that these editions have: 0 alone, 0..90, 0..180, or the whole circle with both
+/// its ends.
 fn stored(web: &Web, notes: &mut Vec<String>) -> Web {
     let mut stored = match web.symmetry() {
         Symmetry::Rotational => Web { horizontal_deg: vec![0.0], ..web.clone() },
@@ -73,7 +75,8 @@ fn stored(web: &Web, notes: &mut Vec<String>) -> Web {
     stored
 }
 
-/// Number of lamps, and lumens of each: -1 in absolute photometry. A number that is not whole stands for one lamp.
+/// Number of lamps, and lumens of each: -1 in absolute photometry. A number that is not whole stands for one
+/// lamp.
 fn lamps(export: &Export) -> (f64, f64) {
     let lamps = if export.lamps >= 1.0 && export.lamps.fract() == 0.0 { export.lamps } else { 1.0 };
     (lamps, export.lamps_lm.map_or(-1.0, |lm| lm / lamps))
@@ -95,12 +98,15 @@ fn labels(export: &Export, notes: &mut Vec<String>) -> Vec<String> {
     // Of several with one required keyword the others follow.
     let mut taken = Vec::new();
     let others = export.labels.iter().filter(|(key, text)| {
-        let is_first =
-            is_required(key) && !text.trim().is_empty() && !taken.contains(&key.to_ascii_uppercase());
-        if is_first {
-            taken.push(key.to_ascii_uppercase());
+        if !is_required(key) {
+            return true;
         }
-        !is_first && !(is_required(key) && text.trim().is_empty())
+        let (is_blank, word) = (text.trim().is_empty(), key.to_ascii_uppercase());
+        let is_another = taken.contains(&word);
+        if !is_blank {
+            taken.push(word);
+        }
+        is_another && !is_blank
     });
     let all = required.iter().chain(others.collect::<Vec<_>>());
     all.flat_map(|(key, text)| label(key, text, notes)).collect()
@@ -229,14 +235,16 @@ mod tests {
         let mut export = Export::new("Stra\u{df}e", web).unwrap();
         export.labels.push(("MANUFAC".to_owned(), "we".to_owned()));
         export.labels.push((String::new(), "a free line".to_owned()));
+        export.labels.push(("IssueDate".to_owned(), " ".to_owned()));
         export.labels.push(("ISSUEDATE".to_owned(), "2026-01-02".to_owned()));
+        export.labels.push(("MANUFAC".to_owned(), "they".to_owned()));
         (export.lamps, export.lamps_lm, export.input_watts) = (2.0, Some(1500.0), 12.5);
         export.opening =
             LuminousOpening { shape: OpeningShape::Disk, size_m: [0.1, 0.1, 0.0], heights_m: None };
         export.origin = DataOrigin::Simulation;
         let written = write(&export, Edition::Y2019);
         let expected = "IES:LM-63-2019\r\n[TEST] not stated\r\n[TESTLAB] not stated\r\n[ISSUEDATE] 2026-01-02\r\n\
-            [MANUFAC] we\r\n[LUMINAIRE] Strasse\r\n[OTHER] a free line\r\nTILT=NONE\r\n\
+            [MANUFAC] we\r\n[LUMINAIRE] Strasse\r\n[OTHER] a free line\r\n[MANUFAC] they\r\nTILT=NONE\r\n\
             2 750 1 2 2 1 2 -0.1 -0.1 0\r\n1 1.00010 12.5\r\n0 90\r\n0 90\r\n1000 0\r\n1000 0.666666667\r\n";
         assert_eq!(String::from_utf8(written.bytes).unwrap(), expected);
         assert_eq!(written.notes.len(), 1, "{:?}", written.notes);

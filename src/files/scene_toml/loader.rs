@@ -27,7 +27,7 @@ pub(crate) fn made<T: 'static>(part: T) -> Make<T> {
 }
 
 /// What files hold, or what is wrong with them, by the numbers of the files: each is looked at once.
-type Known<T> = HashMap<usize, Result<Rc<T>>>;
+type Known<T, K = usize> = HashMap<K, Result<Rc<T>>>;
 
 /// The files of a scene, and what is odd about them.
 #[derive(Debug)]
@@ -41,14 +41,14 @@ pub(crate) struct Loader {
     /// What its parts ask for together.
     pub asked: Asked,
     /// Photometric files with one of their lamp sets, and the tilt files that they name.
-    lamps: HashMap<(usize, Option<usize>), Result<Rc<(Photometry, Vec<String>)>>>,
+    lamps: Known<(Photometry, Vec<String>), (usize, Option<usize>)>,
     tables: Known<ScatterTable>,
     meshes: Known<Checked>,
 }
 
 impl Loader {
     pub fn new(name: String, files: Files, asked: Asked) -> Self {
-        let (lamps, tables, meshes) = (HashMap::new(), Known::new(), Known::new());
+        let (lamps, tables, meshes) = (Known::new(), Known::new(), Known::new());
         Self { name, files, warnings: Vec::new(), steps: None, asked, lamps, tables, meshes }
     }
 
