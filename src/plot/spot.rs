@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::estimate::spot::Encircled;
+use crate::estimate::spot::{Encircled, Figure};
 use crate::report::colour::Colour;
 use crate::report::colour::scale::linear_ticks;
 use crate::report::numbers::{digits, rounded, with_error};
@@ -39,7 +39,8 @@ pub fn encircled(name: &str, figures: &SpotFigures) -> Drawing {
     let mut shown: Vec<_> =
         figures.encircled.iter().filter(|point| point.radius_m <= end_m).cloned().collect();
     // Beyond the last photon nothing is left to come.
-    shown.extend(shown.last().filter(|_| outermost < end_m).map(|p| Encircled { radius_m: end_m, ..*p }));
+    let last = if outermost < end_m { shown.last().cloned() } else { at_radius(&figures.encircled, end_m) };
+    shown.extend(last.map(|point| Encircled { radius_m: end_m, ..point }));
     let mut shapes = vec![title(&format!("Encircled flux: {name}"))];
     let t = figures.student.unwrap_or(0.0);
     let ends = shown.iter().map(|point| {
@@ -91,10 +92,12 @@ pub fn sections(name: &str, figures: &SpotFigures) -> Drawing {
         .max(f64::MIN_POSITIVE);
     let range_m = low - pad..high + pad;
     let (unit, unit_name) = unit_of(range_m.end - range_m.start);
-    let top = if most > 0.0 { 1.08 * most } else { 1.0 };
+    let t = figures.student.unwrap_or(0.0);
+    let ends = figures.sections.iter().flatten().map(|c| c.lx + t * c.standard_error_lx.unwrap_or(0.0));
+    // Whole bands, unless they are wider than what they are about.
+    let top = (1.05 * ends.fold(0.0, f64::max)).clamp(1.08 * most, 2.0 * most).max(f64::MIN_POSITIVE);
     let chart = Chart { x: unit * range_m.start..unit * range_m.end, y: 0.0..top };
     let mut shapes = vec![title(&format!("Sections: {name}"))];
-    let t = figures.student.unwrap_or(0.0);
     let shown = |along: usize| {
         let from = figures.sections_at_m[along];
         let of = move |cell: &SectionCell| (unit * (cell.along_m - from), cell.lx, cell.standard_error_lx);
@@ -125,6 +128,17 @@ pub fn sections(name: &str, figures: &SpotFigures) -> Drawing {
     let band = if figures.student.is_some() { "; bands: 95 % of each cell" } else { "" };
     let footer = [format!("through u {u} m, v {v} m{band}"), format!("peak {peak}")];
     finished(shapes, TOP + HEIGHT + NAME, legend, &footer)
+}
+
+/// The curve between two of its points.
+fn at_radius(curve: &[Encircled], radius_m: f64) -> Option<Encircled> {
+    let pair = curve.windows(2).find(|pair| (pair[0].radius_m..=pair[1].radius_m).contains(&radius_m))?;
+    let [a, b] = [pair[0], pair[1]];
+    let part = (radius_m - a.radius_m) / (b.radius_m - a.radius_m);
+    let between = |a: f64, b: f64| a + part * (b - a);
+    let share = Figure { value: between(a.share.value, b.share.value), ..b.share };
+    let by_cells = [0, 1].map(|i| between(a.by_cells[i], b.by_cells[i]));
+    Some(Encircled { radius_m, share, by_cells })
 }
 
 fn centroid(figures: &SpotFigures) -> [String; 2] {
