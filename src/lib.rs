@@ -124,6 +124,7 @@ pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, choose_cells, trace
 pub use sequence::Sequence;
 // Results:
 pub use estimate::extremes::Interval;
+pub use estimate::spot::{Diameter, Encircled, Figure};
 pub use run::{Estimate, Outcome};
 pub use transport::{Census, Ledger};
 // Results as text and files; `write_map_...` write a receiver's map, `write_picture_...` a camera's picture:
@@ -141,6 +142,7 @@ pub use report::maps::{
 };
 pub use report::picture::{camera_attributes, write_exr as write_picture_exr};
 pub use report::ply::write_ply as write_map_ply;
+pub use report::spot::{Peak, SectionCell, SpotFigures, SpotStatistics};
 pub use report::statistics::{GridStatistics, ReceiverStatistics};
 pub use report::text::summary;
 pub use report::uniformity::Uniformity;

@@ -218,7 +218,9 @@ impl Check {
         let replicates = DEFAULT_REPLICATES as usize;
         let nodes: usize =
             far_fields.iter().map(|f| f.nodes).sum::<usize>() * 2 * replicates * size_of::<u64>();
-        let memory_bytes = (scene.memory_bytes() + cells * per_cell + nodes) as u64 + of_camera;
+        let fine: usize = scene.receivers.iter().filter_map(|r| r.spot).map(|spot| spot.cells()).sum();
+        let kept = nodes + fine * 2 * replicates * size_of::<u64>();
+        let memory_bytes = (scene.memory_bytes() + cells * per_cell + kept) as u64 + of_camera;
         Self {
             ok: true,
             requires: requirements(scene),

@@ -18,6 +18,7 @@ use crate::report::json::Report;
 use crate::report::numbers::grouped;
 use crate::report::ply::write_ply;
 use crate::report::saved::SavedReport;
+use crate::report::spot::SpotStatistics;
 use crate::report::statistics::ReceiverStatistics;
 use crate::report::vouched::vouching;
 use crate::report::vtp::write_vtp;
@@ -190,6 +191,9 @@ pub(super) fn strictly<'a>(is_strict: bool, done: u8, said: impl IntoIterator<It
     if done == exit::DONE && is_strict && is_untrusted { exit::UNTRUSTED } else { done }
 }
 
+/// What is written of a spot.
+const SPOT_ENDINGS: [&str; 4] = ["encircled.csv", "encircled.svg", "sections.csv", "sections.svg"];
+
 /// What is written of a receiver, by the endings of the files.
 fn endings(receiver: &Receiver) -> Vec<&'static str> {
     let of_cells: &[_] = match receiver.cells {
@@ -198,7 +202,8 @@ fn endings(receiver: &Receiver) -> Vec<&'static str> {
         Cells::Faces { .. } => &["exr", "csv", "ply", "vtp"],
     };
     let of_grid = receiver.grid.map(|_| "grid.csv");
-    of_cells.iter().copied().chain(of_grid).collect()
+    let of_spot = receiver.spot.iter().flat_map(|_| SPOT_ENDINGS);
+    of_cells.iter().copied().chain(of_grid).chain(of_spot).collect()
 }
 
 /// Makes the files of one receiver; the names of those that could be.
@@ -217,12 +222,28 @@ fn write_receiver(
             "png" => plot::maps::write_png(path, scene, outcome, receiver, s),
             "csv" => maps::write_csv(path, scene, receiver, s),
             "grid.csv" => maps::write_grid_csv(path, scene, receiver, s),
+            ending if SPOT_ENDINGS.contains(&ending) => match &s.spot {
+                Some(spot) => write_spot(path, ending, &receiver.name, spot),
+                None => Ok(false),
+            },
             "ply" => write_ply(path, scene, outcome, receiver, s),
             _ => write_vtp(path, scene, outcome, receiver, s),
         });
         made.extend(is_made.then_some(name));
     }
     made
+}
+
+/// A table or a drawing of a spot; false, and no file, where it has no figures.
+fn write_spot(path: &Path, ending: &str, name: &str, spot: &SpotStatistics) -> Result<bool> {
+    let Some(figures) = &spot.figures else { return Ok(false) };
+    match ending {
+        "encircled.csv" => figures.write_encircled_csv(path),
+        "encircled.svg" => plot::spot::encircled(name, figures).write(path),
+        "sections.csv" => figures.write_sections_csv(path),
+        _ => plot::spot::sections(name, figures).write(path),
+    }
+    .map(|()| true)
 }
 
 /// The exit code of a picture of which an interrupt left so many pixels unseen.

@@ -11,7 +11,7 @@
 
 use crate::tally::Moments;
 
-use super::replicates::standard_error_of_cell;
+use super::replicates::{FEWEST_HITS, standard_error_of_cell};
 
 /// The widest interval of a U0 that is given.
 pub const WIDEST: f64 = 0.1;
@@ -115,6 +115,13 @@ impl Map<'_> {
         let sum = self.cells.sum[cell];
         let spread = standard_error_of_cell(sum, self.cells.square[cell], self.replicates).unwrap_or(0.0);
         spread.max((sum as f64).sqrt()) / self.area(cell)
+    }
+
+    /// The brightest cell alone, whatever the noise of the others: a spot has cells of much light among dark ones. `None` for
+    /// one replicate, and where that cell has fewer than ten photons.
+    pub fn peak(&self) -> Option<Interval> {
+        let most = *self.cells.sum.iter().max()?;
+        (self.replicates > 1 && most >= FEWEST_HITS).then(|| self.maximum(student(self.replicates - 1)))
     }
 
     /// The extremes, or why they are not known.

@@ -20,6 +20,7 @@ pub mod picture;
 mod polar;
 pub mod candela;
 pub mod far_field;
+pub mod spot;
 pub mod isocandela;
 pub mod bsdf;
 pub mod compare;

@@ -277,8 +277,11 @@ impl<'a> Report<'a> {
         let photons = outcome.photons as f64;
         let receivers = scene.receivers.iter().zip(statistics).zip(files);
         let rounded = scene.receivers.iter().zip(statistics).filter_map(rounded_hits);
-        let warnings: Vec<Warning> =
-            warnings(scene, outcome).into_iter().chain(rounded).chain(of_scene(&scene.warnings)).collect();
+        let spots = scene.receivers.iter().zip(statistics);
+        let spots =
+            spots.filter_map(|(receiver, of)| Some(of.spot.as_ref()?.warnings(&receiver.name))).flatten();
+        let of_run = warnings(scene, outcome).into_iter().chain(rounded).chain(spots);
+        let warnings: Vec<Warning> = of_run.chain(of_scene(&scene.warnings)).collect();
         let untrusted = |receiver: &Receiver| {
             let surface = scene.geometry.name(receiver.surface);
             let spoils = |w: &&Warning| {

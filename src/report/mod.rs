@@ -5,6 +5,7 @@
 pub mod numbers;
 pub mod colour;
 pub mod statistics;
+pub mod spot;
 pub mod uniformity;
 pub mod unknown;
 pub mod attributes;

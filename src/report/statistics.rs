@@ -6,6 +6,7 @@ use crate::run::Outcome;
 use crate::scene::evaluation::Grid;
 use crate::scene::receiver::{Cells, DividedBy, Receiver};
 
+use super::spot::{MapCells, SpotStatistics};
 use super::uniformity::Uniformity;
 
 /// A receiver's map in lux, and the numbers that sum it up. Names are those of report.json: they are only added to.
@@ -38,6 +39,9 @@ pub struct ReceiverStatistics {
     /// The evaluation grid, where the receiver has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<GridStatistics>,
+    /// The figures of its spot, where they are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spot: Option<SpotStatistics>,
     /// Area of all cells, m2.
     pub area_m2: f64,
     /// Number of cells.
@@ -97,6 +101,14 @@ impl GridStatistics {
     }
 }
 
+/// Cells along u and v of a map that has them.
+fn grid_of(cells: Cells) -> Option<[u32; 2]> {
+    match cells {
+        Cells::Grid { nu, nv } => Some([nu, nv]),
+        Cells::Faces { .. } => None,
+    }
+}
+
 impl ReceiverStatistics {
     /// The most photons in a cell whose number a 32-bit float (an EXR's) rounds: all up to 2^24 are exact, and some beyond.
     pub fn rounded_hits(&self) -> Option<u64> {
@@ -127,6 +139,12 @@ impl ReceiverStatistics {
         let extremes = outcome.extremes(index, receiver.areas_m2());
         // An evaluation grid leaves the map as fine as it is.
         let key = if receiver.size_m.is_some() { "grid" } else { "cells" };
+        let uniformity = Uniformity::new(extremes, receiver.cells, key, outcome);
+        let spot = receiver.spot.as_ref().zip(grid_of(receiver.cells)).map(|(spot, counts)| {
+            let maximum = outcome.peak_lx(index, receiver.areas_m2());
+            let (lx, errors, hits) = (&illuminance_lx, &standard_error_lx, &outcome.cells()[index].sum);
+            SpotStatistics::new(spot, outcome, index, &MapCells { counts, lx, errors, hits, maximum })
+        });
         Self {
             hits: outcome.cells()[index].sum.clone(),
             flux_lm: flux.value,
@@ -135,7 +153,8 @@ impl ReceiverStatistics {
             mean_lx,
             max_lx,
             uniformity_u0: lit.then(|| min_lx / mean_lx),
-            uniformity: Uniformity::new(extremes, receiver.cells, key, outcome),
+            uniformity,
+            spot,
             grid: receiver.grid.map(|grid| GridStatistics::new(outcome, index, &grid)),
             area_m2,
             cells,
@@ -169,6 +188,7 @@ mod tests {
                 uniformity_u0: None,
                 uniformity: Uniformity::default(),
                 grid: None,
+                spot: None,
                 area_m2: 1.0,
                 cells: 1,
                 cells_by_pilot: None,

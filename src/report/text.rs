@@ -86,6 +86,9 @@ fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &
     let mean_error = s.flux_standard_error_lm.map(|e| e / s.area_m2);
     writeln!(out, "  illuminance  mean {}", with_error(s.mean_lx, mean_error, "lx"))?;
     write_extremes(out, s)?;
+    if let Some(spot) = &s.spot {
+        out.push_str(&spot.text());
+    }
     if let Some(nrms) = s.expected_nrms {
         let nrms = rounded(100.0 * nrms, 3);
         writeln!(out, "  error        a cell is off by {nrms} % of the mean (root mean square)")?;

@@ -9,9 +9,9 @@ use crate::scene::Scene;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
+use super::kept::check_kept;
 use super::outcome::{Outcome, StoppedBy};
 use super::plan::Plan;
-use super::replicates::check_far_fields;
 use super::tracer::Tracer;
 
 /// A run whose photons go through other hands, for pictures.
@@ -30,7 +30,7 @@ pub fn trace_by(
     mut stage: impl FnMut(&mut Tracer<'_>, u64, &Receivers<'_>) -> Result<Traced>,
     interrupt: &AtomicBool,
 ) -> Result<Outcome> {
-    check_far_fields(scene, plan)?;
+    check_kept(scene, plan)?;
     let started = Instant::now();
     let mut receivers = Receivers::of_scene(scene, plan.photons_per_replicate());
     let mut outcome = Outcome::new(scene, plan);

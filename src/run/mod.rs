@@ -11,6 +11,7 @@ pub mod algorithm;
 pub mod plan;
 pub mod tracer;
 pub mod outcome;
+mod kept;
 pub mod in_turn;
 pub mod replicates;
 pub mod pilot;

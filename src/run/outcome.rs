@@ -3,11 +3,12 @@
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind};
-use crate::estimate::extremes::{Extremes, Map, Unknown};
+use crate::estimate::extremes::{Extremes, Interval, Map, Unknown};
 use crate::estimate::far_field::{self, Sums, Table};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
 use crate::scene::Scene;
 use crate::tally::counts::Counts;
+use crate::tally::spot::{SpotCount, SpotTally};
 use crate::tally::{Moments, Receivers};
 use crate::transport::parallel::Traced;
 use crate::transport::{Census, Ledger};
@@ -48,6 +49,8 @@ pub struct Outcome {
     grids: Vec<Moments>,
     /// Of each evaluation grid's total.
     grid_totals: Moments,
+    /// Of every receiver whose spot is measured: what each replicate counted.
+    spots: Vec<Vec<SpotCount>>,
     /// Of every far field.
     far_fields: Vec<Sums>,
     /// Arrivals on the side of each receiver on which it does not count.
@@ -86,6 +89,7 @@ impl Outcome {
             totals: Moments::new(scene.receivers.len()),
             grids: scene.receivers.iter().map(|r| Moments::new(r.grid.map_or(0, |g| g.cells()))).collect(),
             grid_totals: Moments::new(scene.receivers.len()),
+            spots: vec![Vec::new(); scene.receivers.len()],
             far_fields: vec![Sums::of_photons(plan.photons_per_replicate()); scene.far_fields.len()],
             turned_away: vec![0; scene.receivers.len()],
             other_events: vec![0; scene.receivers.len()],
@@ -120,6 +124,9 @@ impl Outcome {
         ];
         for (sums, counts) in refused {
             sums.iter_mut().zip(counts.iter()).for_each(|(sum, count)| *sum += count);
+        }
+        for (receiver, spot) in self.spots.iter_mut().enumerate() {
+            spot.extend(receivers.spot(receiver).map(SpotTally::counted));
         }
         let counted = receivers.far_fields();
         for (field, sums) in self.far_fields.iter_mut().enumerate() {
@@ -185,6 +192,7 @@ impl Outcome {
         (self.photons, self.replicates, self.census) = (0, 0, Census::default());
         self.turned_away.fill(0);
         self.other_events.fill(0);
+        self.spots.iter_mut().for_each(Vec::clear);
         self.far_fields.iter_mut().for_each(Sums::clear);
         self.ledger = Ledger::new(self.ledger.emitted.len(), self.ledger.absorbed.len());
         [&mut self.accounts, &mut self.totals, &mut self.grid_totals].into_iter().for_each(Moments::clear);
@@ -221,6 +229,13 @@ impl Outcome {
         Map { cells: &self.cells[receiver], areas_m2, error_of_sum, replicates: self.replicates }.extremes()
     }
 
+    /// The brightest cell of a receiver with these cell areas, lx; `None` where it is not known.
+    pub(crate) fn peak_lx(&self, receiver: usize, areas_m2: &[f64]) -> Option<Interval> {
+        let (cells, replicates) = (&self.cells[receiver], self.replicates);
+        let peak = Map { cells, areas_m2, error_of_sum: None, replicates }.peak();
+        peak.map(|peak| peak.times(self.photon_lm))
+    }
+
     /// The mean of a receiver's evaluation grid in photons a square metre, and the extremes of its cells of this area.
     pub(crate) fn grid(&self, receiver: usize, area_m2: f64) -> (Estimate, Result<Extremes, Unknown>) {
         let (cells, total) = (&self.grids[receiver], &self.grid_totals);
@@ -238,6 +253,11 @@ impl Outcome {
     /// Photons in the cells of a receiver's evaluation grid.
     pub fn grid_cells(&self, receiver: usize) -> &Moments {
         &self.grids[receiver]
+    }
+
+    /// What each replicate counted of a receiver's spot; nothing where it is not measured.
+    pub(crate) fn spot(&self, receiver: usize) -> &[SpotCount] {
+        &self.spots[receiver]
     }
 
     /// Flux that arrived at a receiver, lm.

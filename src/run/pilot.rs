@@ -50,7 +50,7 @@ pub fn choose_cells(scene: &mut Scene, plan: &Plan, interrupt: &AtomicBool) -> R
     let is_open = |receiver: &&Receiver| receiver.divided_by == DividedBy::Default;
     let level = |receiver: &Receiver, k: u32| {
         let mut divided = receiver.divided([1 << k; 2], DividedBy::Pilot);
-        divided.grid = None;
+        (divided.grid, divided.spot) = (None, None);
         divided
     };
     scene.receivers =

@@ -5,19 +5,16 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::error::{Diagnostic, Kind, Result};
+use crate::error::Result;
 use crate::scene::Scene;
-use crate::scene::receiver::Receiver;
 use crate::tally::Receivers;
 use crate::transport::parallel::Traced;
 
 use super::in_turn::trace_by;
+use super::kept::{are_kept, check_kept, counters};
 use super::outcome::{Outcome, StoppedBy};
 use super::plan::Plan;
 use super::tracer::Tracer;
-
-/// Most counters of all replicates together: 2^27 of 8 bytes, a gibibyte.
-const MOST_COUNTERS: u64 = 1 << 27;
 
 /// Photons of the first stage, over all replicates.
 const FIRST_STAGE: u64 = 1 << 13;
@@ -41,7 +38,7 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    check_far_fields(scene, plan)?;
+    check_kept(scene, plan)?;
     if !together(scene, plan) {
         let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
             tracer.trace(end, receivers, interrupt, progress)
@@ -79,34 +76,6 @@ pub fn trace(
 /// made for their number, so that a first part of them is no sample.
 fn together(scene: &Scene, plan: &Plan) -> bool {
     are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
-}
-
-/// Whether there is room for the maps of all replicates.
-pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
-    counters(scene, plan) <= MOST_COUNTERS
-}
-
-/// Counters of all replicates.
-fn counters(scene: &Scene, plan: &Plan) -> u64 {
-    let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
-    let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
-    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.count() as u64).sum();
-    (cells + nodes).saturating_mul(u64::from(plan.replicates()))
-}
-
-/// That there is room for the far fields of every replicate, which are all kept: their errors need them.
-///
-/// # Errors
-/// More than 2^27 nodes.
-pub(super) fn check_far_fields(scene: &Scene, plan: &Plan) -> Result<()> {
-    let nodes: u64 = scene.far_fields.iter().map(|field| field.nodes.count() as u64).sum();
-    let all = nodes.saturating_mul(u64::from(plan.replicates()));
-    if all <= MOST_COUNTERS {
-        return Ok(());
-    }
-    let found =
-        format!("{} replicates of {nodes} nodes in far fields, half steps included", plan.replicates());
-    Err(Diagnostic::new(Kind::Limit, found, "at most 2^27 nodes in all: fewer replicates, or wider steps"))
 }
 
 /// A replicate as far as it is traced.

@@ -12,7 +12,7 @@ use crate::transport::mixed::{self, Witness};
 
 use super::Outcome;
 use super::dark;
-use super::replicates::are_kept;
+use super::kept::are_kept;
 
 /// The code of light that total reflection keeps.
 pub const TRAPPED: &str = "trapped";

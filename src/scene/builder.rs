@@ -176,6 +176,7 @@ impl SceneBuilder {
                 Ok(receiver) => {
                     cells += receiver.cells.len() as u64;
                     cells += receiver.grid.map_or(0, |grid| grid.cells() as u64);
+                    cells += receiver.spot.map_or(0, |spot| spot.cells() as u64);
                     receivers.push(receiver);
                 }
                 Err(e) => errors.push(e.placed(*place)),

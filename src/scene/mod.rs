@@ -23,6 +23,7 @@ pub mod receiver;
 pub mod requires;
 pub mod sheets;
 mod sizes;
+pub mod spot;
 pub mod steps;
 mod units;
 

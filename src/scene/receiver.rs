@@ -5,6 +5,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::{Geometry, LENGTH, Shape, SurfaceId};
 
 use super::evaluation::{GRID_REQUIRED, Grid, GridKind, MOST_GRID_CELLS};
+use super::spot::Spot;
 
 /// The side of its surface on which a receiver counts arriving flux.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,6 +53,8 @@ pub struct ReceiverSpec {
     events: ReceiverEvents,
     grid: Option<GridKind>,
     border_m: f64,
+    /// Whether its spot is measured, and the point of the sections.
+    spot: Option<Option<[f64; 2]>>,
 }
 
 impl ReceiverSpec {
@@ -62,7 +65,16 @@ impl ReceiverSpec {
     pub fn new(name: impl Into<String>, surface: impl Into<String>) -> Result<Self, Invalid> {
         let name = check_name("receiver", name.into())?;
         let (side, events) = (ReceiverSide::default(), ReceiverEvents::default());
-        Ok(Self { name, surface: surface.into(), cells: None, side, events, grid: None, border_m: 0.0 })
+        Ok(Self {
+            name,
+            surface: surface.into(),
+            cells: None,
+            side,
+            events,
+            grid: None,
+            border_m: 0.0,
+            spot: None,
+        })
     }
 
     /// The same with so many cells along u and v, those that a pilot chooses (`choose_cells`) without; not on a mesh, which has one value a face.
@@ -105,6 +117,13 @@ impl ReceiverSpec {
         self.border_m = if border_m == 0.0 { 0.0 } else { LENGTH.check("border_m", border_m)? };
         self.grid = Some(counts.map_or(GridKind::En12464, GridKind::Counts));
         Ok(self)
+    }
+
+    /// The same with the figures of the spot that the light makes on a rectangle, and sections through this point, in metres
+    /// from the corner along u and v; through the peak without.
+    #[must_use]
+    pub fn with_spot(self, at_m: Option<[f64; 2]>) -> Self {
+        Self { spot: Some(at_m), ..self }
     }
 
     /// Name of the output.
@@ -208,6 +227,8 @@ pub struct Receiver {
     pub size_m: Option<[f64; 2]>,
     /// The evaluation grid beside the map.
     pub grid: Option<Grid>,
+    /// What is measured of its spot.
+    pub spot: Option<Spot>,
 }
 
 /// Cells of receivers without a number of their own, until a pilot chooses them.
@@ -275,8 +296,16 @@ impl Receiver {
                 return Err(Diagnostic::new(Kind::Range, found, "a grid on a rectangle alone"));
             }
         };
+        let spot = match (spec.spot, shape) {
+            (None, _) => None,
+            (Some(at_m), Shape::Rectangle(rectangle)) => Some(Spot::new(*rectangle, at_m)?),
+            (Some(_), _) => {
+                let found = format!("`spot` for receiver \"{}\", which is no rectangle", spec.name);
+                return Err(Diagnostic::new(Kind::Range, found, "spot figures of a rectangle alone"));
+            }
+        };
         let (name, side, events) = (spec.name.clone(), spec.side, spec.events);
-        Ok(Self { name, surface, cells, divided_by, side, events, areas_m2, size_m, grid })
+        Ok(Self { name, surface, cells, divided_by, side, events, areas_m2, size_m, grid, spot })
     }
 
     /// The same receiver of nu x nv cells; one on faces stays as it is.

@@ -7,6 +7,7 @@
 pub mod counts;
 pub mod far_field;
 pub mod receiver;
+pub mod spot;
 pub mod weighted;
 pub mod wide_sum;
 

@@ -14,6 +14,7 @@ use crate::transport::{Arrival, Sink};
 
 use super::counts::Counts;
 use super::far_field::FarFields;
+use super::spot::SpotTally;
 
 /// Which cells of which receivers an arrival falls into.
 #[derive(Debug)]
@@ -31,6 +32,8 @@ pub struct Receivers<'s> {
     counts: Vec<Counts>,
     /// Of the receivers that have an evaluation grid, its cells.
     grids: Vec<Option<Counts>>,
+    /// Of those whose spot is measured, its sums.
+    spots: Vec<Option<SpotTally>>,
     far_fields: FarFields<'s>,
     /// Arrivals on the side of each receiver on which it does not count.
     turned_away: Counts,
@@ -86,8 +89,11 @@ impl<'s> Routes<'s> {
 
     /// The cell of a receiver's evaluation grid.
     fn grid_cell(&self, receiver: usize, hit: &Hit) -> Option<usize> {
-        let shape = &self.geometry.surfaces()[hit.surface.0 as usize].shape;
-        self.receivers[receiver].grid?.cell(shape.uv(hit.position)?)
+        self.receivers[receiver].grid?.cell(self.uv(hit)?)
+    }
+
+    fn uv(&self, hit: &Hit) -> Option<(f64, f64)> {
+        self.geometry.surfaces()[hit.surface.0 as usize].shape.uv(hit.position)
     }
 
     fn cell(&self, receiver: &Receiver, hit: &Hit) -> Option<usize> {
@@ -123,9 +129,10 @@ impl<'s> Receivers<'s> {
     ) -> Self {
         let counts = receivers.iter().map(|r| Counts::new(r.cells.len())).collect();
         let grids = receivers.iter().map(|r| r.grid.map(|grid| Counts::new(grid.cells()))).collect();
+        let spots = receivers.iter().map(|r| r.spot.map(SpotTally::new)).collect();
         let [turned_away, other_events] = [0; 2].map(|_| Counts::new(receivers.len()));
         let (routes, far_fields) = (Routes::new(geometry, receivers), FarFields::new(far_fields, photons));
-        Self { routes, counts, grids, far_fields, turned_away, other_events }
+        Self { routes, counts, grids, spots, far_fields, turned_away, other_events }
     }
 
     /// A handle for one batch of photons; all handles add to the same counters.
@@ -146,6 +153,11 @@ impl<'s> Receivers<'s> {
     /// Counts of a receiver's evaluation grid, row by row from the top left.
     pub fn grid(&self, receiver: usize) -> Option<&Counts> {
         self.grids[receiver].as_ref()
+    }
+
+    /// The sums of a receiver's spot, where it is measured.
+    pub fn spot(&self, receiver: usize) -> Option<&SpotTally> {
+        self.spots[receiver].as_ref()
     }
 
     /// The sums of the scene's far fields.
@@ -169,6 +181,7 @@ impl<'s> Receivers<'s> {
         self.other_events.clear();
         self.far_fields.clear();
         self.counts.iter_mut().chain(self.grids.iter_mut().flatten()).for_each(Counts::clear);
+        self.spots.iter_mut().flatten().for_each(SpotTally::clear);
     }
 }
 
@@ -191,6 +204,11 @@ impl<T> Sink<T> for ReceiverSink<'_, '_> {
                     && let Some(cell) = all.routes.grid_cell(receiver, arrival.hit)
                 {
                     grid.add(cell, 1);
+                }
+                if let Some(spot) = &all.spots[receiver]
+                    && let Some(uv) = all.routes.uv(arrival.hit)
+                {
+                    spot.add(uv);
                 }
             },
             |receiver, why| match why {

@@ -28,9 +28,9 @@ impl WideSum {
         u128::from(high) << 64 | u128::from(low)
     }
 
-    /// The sum.
-    pub fn get(&mut self) -> u128 {
-        u128::from(*self.high.get_mut()) << 64 | u128::from(*self.low.get_mut())
+    /// The sum, once nothing is added any more.
+    pub fn get(&self) -> u128 {
+        u128::from(self.high.load(Ordering::Relaxed)) << 64 | u128::from(self.low.load(Ordering::Relaxed))
     }
 }
 

@@ -26,5 +26,6 @@ mod scaled_picture;
 mod shapes;
 mod slab;
 mod sphere;
+mod spot;
 mod tabulated_scenes;
 mod warnings;

@@ -232,3 +232,49 @@ fn cells_of_an_evaluation_grid_have_a_table_of_their_own() {
     let check: Value = serde_json::from_str(&s.types("check scene.toml --json").1).unwrap();
     assert_eq!(check["receivers"][0]["cells_by_pilot"], true);
 }
+
+/// The curve goes from nothing to all; sections are the row and the column of the map that go through the point.
+#[test]
+fn spots_have_their_files_and_no_other_receiver_has() {
+    let keys = "cells = [5, 4]\nspot = true\nspot_at = [1.3, 0.7]";
+    let s = Stranger::with(&[("scene.toml", &SCENE.replace("cells = [5, 4]", keys))]);
+    s.is_told("render scene.toml -o out --photons 2^14 --quiet", 0, &["the spot may be cut"]);
+    let report: Value =
+        serde_json::from_str(&fs::read_to_string(s.path("out/report.json")).unwrap()).unwrap();
+    let (of_plate, of_ball) = (&report["receivers"][0], &report["receivers"][1]);
+    for ending in ["encircled.csv", "encircled.svg", "sections.csv", "sections.svg"] {
+        assert!(report["files"][format!("plate.{ending}")].is_string(), "{ending}");
+        assert!(report["files"].get(format!("ball.{ending}")).is_none(), "{ending}");
+    }
+    assert!(of_ball.get("spot").is_none() && of_plate["spot"]["d50_m"]["high"].is_number());
+    assert_eq!(
+        of_plate["spot"]["photons"].as_u64(),
+        Some(table(&s, "out/plate.csv")["hits"].iter().sum::<f64>() as u64)
+    );
+    let curve = table(&s, "out/plate.encircled.csv");
+    let (shares, radii) = (&curve["share"], &curve["radius_m"]);
+    assert_eq!((radii[0], shares[0], shares.last()), (0.0, 0.0, Some(&1.0)));
+    assert!(radii.is_sorted() && shares.is_sorted() && curve["standard_error"].iter().all(|e| *e >= 0.0));
+    // 1.3 m of 2 m is in column 3 of 5, 0.7 m of 2 m in row 1 of 4 from below: 2 from the top.
+    let map = table(&s, "out/plate.csv");
+    let cells = (0..5).map(|column| 2 * 5 + column).chain((0..4).rev().map(|row| row * 5 + 3));
+    let text = fs::read_to_string(s.path("out/plate.sections.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 9);
+    for (i, (row, cell)) in rows.iter().zip(cells).enumerate() {
+        assert_eq!(row[0], if i < 5 { "u" } else { "v" });
+        let along = map[row[0]][cell] * 2.0;
+        for (text, expected) in row[1..].iter().zip([
+            along,
+            map["x"][cell],
+            map["y"][cell],
+            map["z"][cell],
+            map["illuminance_lx"][cell],
+            map["standard_error_lx"][cell],
+            map["hits"][cell],
+        ]) {
+            let number: f64 = text.parse().unwrap();
+            assert!((number - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{row:?} {expected}");
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use super::names::Names;
 use super::part::SurfacePart;
 use super::table::{Placed, Table};
+use crate::error::invalid::Interval;
 use crate::error::{Kind, Place};
 use crate::geometry::LENGTH;
 use crate::scene::evaluation::{GRID_REQUIRED, MOST_GRID_CELLS};
@@ -47,6 +48,7 @@ pub(super) fn read(
     let side = table.word("side", &SIDES).unwrap_or_default();
     let events = table.word("events", &EVENTS).unwrap_or_default();
     let grid = grid(&mut table);
+    let spot = spot(&mut table);
     let spec = name.and_then(|name| {
         let (surface, _) = surface.unwrap_or_default();
         let spec = table.accept(ReceiverSpec::new(name.value, surface))?.on_side(side).of_events(events);
@@ -54,10 +56,14 @@ pub(super) fn read(
             Some(cells) => table.accept(spec.with_cells(cells))?,
             None => spec,
         };
-        match grid {
-            Some((counts, border_m)) => table.accept(spec.with_grid(counts, border_m)),
-            None => Some(spec),
-        }
+        let spec = match grid {
+            Some((counts, border_m)) => table.accept(spec.with_grid(counts, border_m))?,
+            None => spec,
+        };
+        Some(match spot {
+            Some(at_m) => spec.with_spot(at_m),
+            None => spec,
+        })
     });
     table.finish();
     spec
@@ -80,4 +86,17 @@ fn grid(table: &mut Table<'_, '_>) -> Option<(Option<[u32; 2]>, f64)> {
         None
     };
     Some((counts, border_m))
+}
+
+/// A place along an edge.
+const ALONG: Interval = Interval { low: 0.0, high: 1e9, words: "0 to the length of its edge, in m" };
+
+/// Whether the spot is measured, and the point of the sections.
+fn spot(table: &mut Table<'_, '_>) -> Option<Option<[f64; 2]>> {
+    let is_asked = table.truth("spot") == Some(true);
+    let at_m = table.numbers::<2>("spot_at", &ALONG);
+    if !is_asked && table.place_of("spot_at").is_some() {
+        table.error("spot_at", Kind::Missing, "`spot = true`, whose sections go through this point, too");
+    }
+    is_asked.then_some(at_m)
 }

@@ -1,0 +1,54 @@
+//! What a run keeps of every replicate, and whether there is room for it.
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::scene::Scene;
+use crate::scene::receiver::Receiver;
+
+use super::plan::Plan;
+
+/// Most counters of all replicates together: 2^27 of 8 bytes, a gibibyte.
+const MOST_COUNTERS: u64 = 1 << 27;
+
+/// Whether there is room for the maps of all replicates.
+pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
+    counters(scene, plan) <= MOST_COUNTERS
+}
+
+/// Counters of all replicates.
+pub(super) fn counters(scene: &Scene, plan: &Plan) -> u64 {
+    let grid = |receiver: &Receiver| receiver.grid.map_or(0, |grid| grid.cells() as u64);
+    let cells: u64 = scene.receivers.iter().map(|r| r.cells.len() as u64 + grid(r)).sum();
+    let (nodes, fine) = always_kept(scene);
+    (cells + nodes + fine).saturating_mul(u64::from(plan.replicates()))
+}
+
+/// Nodes of far fields and fine cells of spots: their errors need those of every replicate.
+fn always_kept(scene: &Scene) -> (u64, u64) {
+    let fine = scene.receivers.iter().filter_map(|receiver| receiver.spot);
+    let nodes = scene.far_fields.iter().map(|field| field.nodes.count() as u64);
+    (nodes.sum(), fine.map(|spot| spot.cells() as u64).sum())
+}
+
+/// That there is room for the far fields and spots of every replicate.
+///
+/// # Errors
+/// More than 2^27 nodes and fine cells.
+pub(super) fn check_kept(scene: &Scene, plan: &Plan) -> Result<()> {
+    let (nodes, fine) = always_kept(scene);
+    let replicates = plan.replicates();
+    if (nodes + fine).saturating_mul(u64::from(replicates)) <= MOST_COUNTERS {
+        return Ok(());
+    }
+    let (found, required) = if fine == 0 {
+        (
+            format!("{replicates} replicates of {nodes} nodes in far fields, half steps included"),
+            "at most 2^27 nodes in all: fewer replicates, or wider steps",
+        )
+    } else {
+        (
+            format!("{replicates} replicates of {fine} fine cells of spots and {nodes} nodes of far fields"),
+            "at most 2^27 in all: fewer replicates, or fewer receivers with `spot`",
+        )
+    };
+    Err(Diagnostic::new(Kind::Limit, found, required))
+}
