@@ -63,6 +63,8 @@ pub struct Table {
     pub candela: Vec<f64>,
     /// Their standard errors, cd; `None` for one replicate.
     pub standard_error_cd: Option<Vec<f64>>,
+    /// What one photon more makes of each, cd.
+    pub photon_cd: Vec<f64>,
     /// Nodes held at 0 that would be negative else.
     pub held: usize,
     /// The table of each replicate alone times the number of replicates, before that; empty for one replicate.
@@ -104,9 +106,11 @@ pub fn table(field: &FarField, sums: &Sums, photon_lm: f64) -> Table {
         Symmetry::None => None,
         _ => beyond(&levels.fit(steps, Symmetry::None), &fit),
     };
+    let photon_cd = fit.photon_cd(photon_lm, field.symmetry);
     let (candela, held) = solve_positive(&fit.mass, &fit.b);
     Table {
-        standard_error_cd: is_known.then(|| fit.standard_error(photon_lm, field.symmetry)),
+        standard_error_cd: is_known.then(|| fit.standard_error(&photon_cd)),
+        photon_cd,
         candela: fit.spread_over_poles(candela),
         held,
         replicates: if is_known { fit.each() } else { Vec::new() },
@@ -244,25 +248,32 @@ impl Fit {
 
     /// Spread of the replicates. A node with few hits, whose spread says little, has at least the error of (hits + 1), as
     /// a cell of a receiver has.
-    fn standard_error(&self, photon_lm: f64, symmetry: Symmetry) -> Vec<f64> {
-        let (r, solid) = (self.count(), self.mass.solid_angles_sr());
-        // An averaged node has the hits of all that are equal to it.
-        let planes = self.nodes.planes();
-        let equal: Vec<f64> =
-            (0..planes).map(|plane| levels::count_of_equals(&self.nodes, plane, symmetry)).collect();
+    fn standard_error(&self, photon_cd: &[f64]) -> Vec<f64> {
+        let r = self.count();
+        let solid = self.mass.solid_angles_sr();
         let of = |entry: usize| {
             let mean = self.c[entry] / r;
             let squares: f64 =
                 self.replicates.iter().map(|one| (one.c[entry] - mean) * (one.c[entry] - mean)).sum();
             let spread = (r / (r - 1.0) * squares).sqrt();
-            let equal = if self.nodes.is_pole(entry / planes) { 1.0 } else { equal[entry % planes] };
-            let hits = equal * self.b[entry] / photon_lm;
-            let is_few = hits < FEWEST_HITS as f64;
-            let fewest = if is_few { (hits + 1.0).sqrt() * photon_lm / (equal * solid[entry]) } else { 0.0 };
+            let hits = self.b[entry] / solid[entry] / photon_cd[entry];
+            let fewest = if hits < FEWEST_HITS as f64 { (hits + 1.0).sqrt() * photon_cd[entry] } else { 0.0 };
             spread.max(fewest)
         };
         let all = (0..self.mass.entries()).map(|e| if self.mass.is_node(e) { of(e) } else { 0.0 }).collect();
         self.spread_over_poles(all)
+    }
+
+    /// What one photon more makes of each node's intensity, cd; an averaged node has those of all that are equal to it.
+    fn photon_cd(&self, photon_lm: f64, symmetry: Symmetry) -> Vec<f64> {
+        let planes = self.nodes.planes();
+        let equal: Vec<f64> =
+            (0..planes).map(|plane| levels::count_of_equals(&self.nodes, plane, symmetry)).collect();
+        let of = |(entry, solid): (usize, f64)| match self.nodes.is_pole(entry / planes) {
+            true => photon_lm / solid,
+            false => photon_lm / (equal[entry % planes] * solid),
+        };
+        self.spread_over_poles(self.mass.solid_angles_sr().into_iter().enumerate().map(of).collect())
     }
 
     /// The tables of the replicates, each as if it were all.
@@ -308,13 +319,15 @@ impl Table {
             let mean = |i: usize| half.iter().map(|c| c[i]).sum::<f64>() / half.len() as f64;
             (0..self.candela.len()).map(mean).collect::<Vec<f64>>()
         });
-        // Nodes of which little is known are not chosen for it: two standard errors, of a half run.
-        let surely = |c: &[f64], errors_of: f64| {
-            greatest(&c.iter().zip(errors).map(|(c, e)| c - errors_of * e).collect::<Vec<f64>>())
+        // Nodes of which little is known are not chosen for it. How little is taken from the half that chooses, where a photon
+        // stands for two: from the spread of both, nodes at which they agree would be chosen.
+        let surely = |c: &[f64], photons: f64| {
+            let less =
+                |(c, one): (&f64, &f64)| c - 2.0 * (photons * one * (c.max(0.0) + photons * one)).sqrt();
+            greatest(&c.iter().zip(&self.photon_cd).map(less).collect::<Vec<f64>>())
         };
-        let of_half = 2.0 * 2f64.sqrt();
-        let [a, b] = [surely(&halves[0], of_half), surely(&halves[1], of_half)];
-        let at = surely(&self.candela, 2.0);
+        let [a, b] = [surely(&halves[0], 2.0), surely(&halves[1], 2.0)];
+        let at = surely(&self.candela, 1.0);
         let value = 0.5 * (halves[1][a] + halves[0][b]);
         (value.max(0.0), Some((0.5 * (errors[a] * errors[a] + errors[b] * errors[b])).sqrt()), at)
     }
