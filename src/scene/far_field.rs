@@ -58,7 +58,7 @@ impl FarFieldSpec {
     /// taken that follows the light as well as its noise lets see.
     ///
     /// # Errors
-    /// Anything but [`GAMMA_REQUIRED`].
+    /// Anything but `GAMMA_REQUIRED`.
     pub fn with_gamma_deg(mut self, gamma_deg: &[f64]) -> Result<Self, Invalid> {
         let angles = match gamma_deg {
             [step] => steps(*step, 180.0, 90.0).filter(|angles| angles.len() >= 3),
@@ -75,7 +75,7 @@ impl FarFieldSpec {
     /// as for gamma.
     ///
     /// # Errors
-    /// Anything but [`C_REQUIRED`].
+    /// Anything but `C_REQUIRED`.
     pub fn with_c_deg(mut self, c_deg: &[f64]) -> Result<Self, Invalid> {
         let angles = match c_deg {
             [step] if *step != 0.0 => steps(*step, 360.0, 360.0),
