@@ -63,7 +63,7 @@ struct Command {
 
 #[derive(Debug, Subcommand)]
 enum Sub {
-    /// Trace a scene and write its illuminance maps (without SCENE: the built-in scene).
+    /// Trace a scene and write its illuminance maps, far fields and picture (without SCENE: the built-in scene).
     Render(RenderArgs),
     /// Say what a photometric file (IES LM-63, EULUMDAT) holds: flux, maximum, angles, symmetry.
     Photometry(PhotometryArgs),

@@ -14,6 +14,10 @@ pub fn written(write: impl FnOnce(&mut String) -> fmt::Result) -> String {
 /// A number with its error, rounded to two digits of the error.
 pub fn with_error(value: f64, error: Option<f64>, unit: &str) -> String {
     match error {
+        // Beyond what a number of lumens means: nine digits, and the error by itself.
+        Some(e) if e > 0.0 && e < 1e-9 * value.abs() => {
+            format!("{} +- {e:.1e} {unit} ({:.1e} %)", rounded(value, 9), 100.0 * e / value.abs())
+        }
         Some(e) if e > 0.0 && value != 0.0 => {
             let magnitude = libm::floor(libm::log10(value.abs().max(e)));
             let is_plain = (-5.0..9.0).contains(&magnitude);
@@ -108,6 +112,7 @@ mod tests {
         assert_eq!(rounded(18.733, 3), "18.7");
         assert_eq!(with_error(123.456, Some(0.0123), "lm"), "123.456 +- 0.012 lm (0.01 %)");
         assert_eq!(with_error(0.0, Some(0.0123), "lm"), "0 +- 0.012 lm");
+        assert_eq!(with_error(732.352_722_3, Some(7e-15), "cd"), "732.352722 +- 7.0e-15 cd (9.6e-16 %)");
         assert_eq!(with_error(5.0, None, "lx"), "5 lx");
         assert_eq!(with_error(1.479_27e-10, Some(3.52e-14), "lx"), "(1.47927 +- 0.00035)e-10 lx (0.024 %)");
         assert_eq!(with_error(2.530_35e14, Some(1.26e12), "lx"), "(2.530 +- 0.013)e14 lx (0.5 %)");

@@ -132,8 +132,8 @@ impl Outcome {
         for (field, sums) in self.far_fields.iter_mut().enumerate() {
             sums.absorb(
                 counted.nodes(field).iter().collect(),
-                counted.outside().iter().nth(field),
-                counted.seen().iter().nth(field),
+                counted.outside().get(field),
+                counted.seen().get(field),
             );
         }
         self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).total()));

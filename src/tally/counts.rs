@@ -28,6 +28,11 @@ impl Counts {
         self.0.iter().map(|c| c.load(Ordering::Relaxed))
     }
 
+    /// The count of a cell.
+    pub fn get(&self, cell: usize) -> u64 {
+        self.0[cell].load(Ordering::Relaxed)
+    }
+
     /// Sum of all counts.
     pub fn total(&self) -> u64 {
         self.0.par_chunks(CHUNK).map(|part| part.iter().map(|c| c.load(Ordering::Relaxed)).sum::<u64>()).sum()

@@ -40,10 +40,10 @@ impl Sums {
     }
 
     /// Takes in a finished replicate.
-    pub fn absorb(&mut self, nodes: Vec<u64>, outside: Option<u64>, seen: Option<u64>) {
+    pub fn absorb(&mut self, nodes: Vec<u64>, outside: u64, seen: u64) {
         self.nodes.push(nodes);
-        self.outside.extend(outside);
-        self.seen.extend(seen);
+        self.outside.push(outside);
+        self.seen.push(seen);
     }
 
     /// None again.

@@ -7,12 +7,13 @@ use crate::emitter::AimFrame;
 use crate::error::Kind;
 use crate::scene::far_field::{C_REQUIRED, FarFieldSpec, GAMMA_REQUIRED, Symmetry};
 
-const SYMMETRIES: [(&str, Symmetry); 5] = [
-    ("none", Symmetry::None),
-    ("rotational", Symmetry::Rotational),
-    ("quadrants", Symmetry::Quadrants),
-    ("bilateral 0-180", Symmetry::Bilateral0To180),
-    ("bilateral 90-270", Symmetry::Bilateral90To270),
+/// Those of type C.
+const SYMMETRIES: [Symmetry; 5] = [
+    Symmetry::None,
+    Symmetry::Rotational,
+    Symmetry::Quadrants,
+    Symmetry::Bilateral0To180,
+    Symmetry::Bilateral90To270,
 ];
 
 pub(super) fn read(
@@ -35,7 +36,9 @@ pub(super) fn read(
         // Known, for keys that are misspelt.
         None => table.text("surface").map(|_| None),
     };
-    let symmetry = table.word("symmetry", &SYMMETRIES).unwrap_or(Symmetry::None);
+    let symmetry = table
+        .word("symmetry", &SYMMETRIES.map(|symmetry| (symmetry.name(), symmetry)))
+        .unwrap_or(Symmetry::None);
     let frame = axis.filter(|_| is_up_good).and_then(|axis| {
         let frame = AimFrame::new(axis, up);
         // The frame speaks of `aim`, which is `axis` here.
