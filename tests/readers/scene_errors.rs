@@ -44,7 +44,7 @@ fn top_level() {
         &format!("{LAMP}{good}[[«recever]]\nsurface = \"plate\"\n"),
         Kind::Unknown,
         "the unknown key `recever` in a scene",
-        "emitter, material, ambient, surface, receiver, camera, compare or run",
+        "emitter, material, ambient, surface, receiver, far_field, camera, compare or run",
     );
     assert_eq!(error.advice(), Some("did you mean `receiver`?"));
     expect(
