@@ -228,7 +228,8 @@ fn every_example_of_the_manual_reads() {
     let parts = blocks[1..].concat() + "[material.glass]\ntype = \"dielectric\"\nior = 1.5\n";
     let file = parse(&parts, "manual", Base::BuiltIn).unwrap();
     assert_eq!(file.run.photons, Some(1 << 24));
-    for (header, count) in [("[[emitter]]", 5), ("[[surface]]", 8), ("[[receiver]]", 3), ("[[far_field]]", 1)] {
+    for (header, count) in [("[[emitter]]", 5), ("[[surface]]", 8), ("[[receiver]]", 3), ("[[far_field]]", 1)]
+    {
         assert_eq!(parts.matches(header).count(), count, "{header}");
     }
 }
