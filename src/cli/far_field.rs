@@ -1,6 +1,9 @@
 //! The files of a far field.
 
+use std::path::Path;
+
 use crate::error::warning::{Severity, Warning};
+use crate::files::atomic::write_bytes;
 use crate::files::converted::{ExportFormat, photometric_file};
 use crate::files::set::Set;
 use crate::plot;
@@ -26,16 +29,17 @@ pub(super) fn write(
     s: &FarFieldStatistics,
 ) -> (Vec<String>, Vec<Warning>) {
     let (mut made, mut notes) = (Vec::new(), Vec::new());
+    let luminaire = export(scene, outcome, field, s);
     for ending in ENDINGS {
         let name = format!("{}.{ending}", field.name);
-        let mut photometric = |path: &std::path::Path, format| {
+        let mut photometric = |path: &Path, format| {
             // EULUMDAT has candela per 1000 lm: of no light there is no such file (`far-field-dark` tells).
             if format == ExportFormat::Ldt && s.flux_lm == 0.0 {
                 return Ok(false);
             }
-            let written = photometric_file(&export(scene, outcome, field, s)?, format)?;
+            let written = photometric_file(luminaire.as_ref().map_err(Clone::clone)?, format)?;
             notes.extend(written.notes.into_iter().map(|note| format!("{name}: {note}")));
-            crate::files::atomic::write_bytes(path, &written.bytes).map(|()| true)
+            write_bytes(path, &written.bytes).map(|()| true)
         };
         let is_made = set.add(&name, |path| match ending {
             "ies" => photometric(path, ExportFormat::Ies2002),

@@ -137,7 +137,7 @@ impl Levels<'_> {
             .map(|b| {
                 let b = averaged(&nodes, &widened(&self.field.nodes, b, doublings).1, symmetry);
                 let c = solve(&mass, &b);
-                Replicate { b, c }
+                Replicate { energy: dot(&b, &c), b, c }
             })
             .collect();
         let sum = |of: fn(&Replicate) -> &Vec<f64>| {
@@ -148,7 +148,8 @@ impl Levels<'_> {
             sum
         };
         let (b, c) = (sum(|r| &r.b), sum(|r| &r.c));
-        Fit { nodes, mass, b, c, replicates }
+        let (whole, own) = (dot(&b, &c), replicates.iter().map(|r| r.energy).sum());
+        Fit { nodes, mass, b, c, whole, own, replicates }
     }
 
     /// How often the steps are doubled: once where the scene gives them; else the widest steps of which half would show no
@@ -187,6 +188,9 @@ struct Fit {
     /// Sums and values of all replicates together.
     b: Vec<f64>,
     c: Vec<f64>,
+    /// The integral of the square of the table, and the sum of those of what each replicate adds.
+    whole: f64,
+    own: f64,
     /// Of each: what it adds to them.
     replicates: Vec<Replicate>,
 }
@@ -195,13 +199,8 @@ struct Fit {
 struct Replicate {
     b: Vec<f64>,
     c: Vec<f64>,
-}
-
-impl Replicate {
     /// The integral of the square of what it adds.
-    fn energy(&self) -> f64 {
-        dot(&self.b, &self.c)
-    }
+    energy: f64,
 }
 
 impl Fit {
@@ -213,15 +212,13 @@ impl Fit {
     /// replicates of the product of their tables, which is unbiased.
     fn energy(&self) -> f64 {
         let r = self.count();
-        let own: f64 = self.replicates.iter().map(Replicate::energy).sum();
-        r / (r - 1.0) * (dot(&self.b, &self.c) - own)
+        r / (r - 1.0) * (self.whole - self.own)
     }
 
     /// What noise adds to it: the integral of the variance.
     fn noise(&self) -> f64 {
         let r = self.count();
-        let own: f64 = self.replicates.iter().map(Replicate::energy).sum();
-        r / (r - 1.0) * (own - dot(&self.b, &self.c) / r)
+        r / (r - 1.0) * (self.own - self.whole / r)
     }
 
     /// The energy that a coarser table leaves out, and its standard error: the jackknife over replicates.
@@ -230,8 +227,8 @@ impl Fit {
             let of = |fit: &Self| {
                 let r = fit.count() - 1.0;
                 let one = &fit.replicates[replicate];
-                let rest = dot(&fit.b, &fit.c) - 2.0 * dot(&one.b, &fit.c) + one.energy();
-                let own: f64 = fit.replicates.iter().map(Replicate::energy).sum::<f64>() - one.energy();
+                let rest = fit.whole - 2.0 * dot(&one.b, &fit.c) + one.energy;
+                let own = fit.own - one.energy;
                 // Without one of R replicates the rest stand for (R - 1) / R of the light.
                 let scale = (fit.count() / r) * (fit.count() / r);
                 scale * r / (r - 1.0).max(1.0) * (rest - own)
