@@ -45,6 +45,8 @@ pub struct Outcome {
     cells: Vec<Moments>,
     /// Of each receiver's total: one entry a receiver.
     totals: Moments,
+    /// What each replicate counted.
+    by_replicate: Vec<ReplicateTotals>,
     /// Of every cell of an evaluation grid, by receiver; empty where it has none.
     grids: Vec<Moments>,
     /// Of each evaluation grid's total.
@@ -63,6 +65,16 @@ pub struct Outcome {
     pub trace_s: f64,
     /// Why it ended.
     pub stopped_by: StoppedBy,
+}
+
+/// What one replicate counted in all: of it come errors of differences between runs of the same points, and what the spread
+/// of replicates looks like.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReplicateTotals {
+    /// Photons on each receiver.
+    pub receivers: Vec<u64>,
+    /// Photons absorbed by each surface, then those escaped, then those killed, then those trapped.
+    pub accounts: Vec<u64>,
 }
 
 /// A number and its standard error (one sigma), both in the unit that the function which gives it names.
@@ -87,6 +99,7 @@ impl Outcome {
             accounts: Moments::new(surfaces + 3),
             cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
             totals: Moments::new(scene.receivers.len()),
+            by_replicate: Vec::new(),
             grids: scene.receivers.iter().map(|r| Moments::new(r.grid.map_or(0, |g| g.cells()))).collect(),
             grid_totals: Moments::new(scene.receivers.len()),
             spots: vec![Vec::new(); scene.receivers.len()],
@@ -117,7 +130,11 @@ impl Outcome {
         self.ledger.merge(ledger);
         self.census.merge(census);
         let others = [ledger.escaped, ledger.killed, ledger.total_trapped()];
-        self.accounts.absorb(ledger.absorbed.iter().copied().chain(others));
+        let accounts: Vec<u64> = ledger.absorbed.iter().copied().chain(others).collect();
+        self.accounts.absorb(accounts.iter().copied());
+        let on_receivers: Vec<u64> = (0..self.cells.len()).map(|r| receivers.counts(r).total()).collect();
+        self.totals.absorb(on_receivers.iter().copied());
+        self.by_replicate.push(ReplicateTotals { receivers: on_receivers, accounts });
         let refused = [
             (&mut self.turned_away, receivers.turned_away()),
             (&mut self.other_events, receivers.other_events()),
@@ -136,7 +153,6 @@ impl Outcome {
                 counted.seen().get(field),
             );
         }
-        self.totals.absorb((0..self.cells.len()).map(|r| receivers.counts(r).total()));
         self.grid_totals.absorb((0..self.cells.len()).map(|r| receivers.grid(r).map_or(0, Counts::total)));
     }
 
@@ -190,6 +206,7 @@ impl Outcome {
 
     fn clear_accounts(&mut self) {
         (self.photons, self.replicates, self.census) = (0, 0, Census::default());
+        self.by_replicate.clear();
         self.turned_away.fill(0);
         self.other_events.fill(0);
         self.spots.iter_mut().for_each(Vec::clear);
@@ -206,6 +223,11 @@ impl Outcome {
     /// Photons counted on each receiver.
     pub fn totals(&self) -> &Moments {
         &self.totals
+    }
+
+    /// What each replicate counted in all, in their order.
+    pub(crate) fn by_replicate(&self) -> &[ReplicateTotals] {
+        &self.by_replicate
     }
 
     /// Photons absorbed by each surface, then those escaped, then those killed, then those trapped.
