@@ -7,6 +7,8 @@ mod misuse;
 mod progress;
 mod results;
 mod picture;
+#[cfg(feature = "mpi")]
+mod ranks;
 mod render;
 mod photometry;
 mod check;
@@ -86,6 +88,11 @@ type Done = Result<u8, Vec<Diagnostic>>;
 
 /// Runs the command with the arguments of the process.
 pub fn main() -> ExitCode {
+    #[cfg(feature = "mpi")]
+    let _ranks = match ranks::Ranks::alone() {
+        Ok(ranks) => ranks,
+        Err(exit) => return exit,
+    };
     let parsed = Command::try_parse().and_then(|command| match command.subcommand {
         Some(subcommand) => Ok(subcommand),
         None => RenderArgs::try_parse_from(["caustix"]).map(Sub::Render),
