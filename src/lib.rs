@@ -120,7 +120,10 @@ pub use scene::{Joint, Scene, SceneBuilder, SurfaceOptions};
 pub use surface::models::*;
 pub use surface::{Material, Reflectance};
 // Runs:
-pub use run::{Algorithm, Plan, Settings, StoppedBy, Variant, choose_cells, trace, warnings};
+pub use run::{
+    Algorithm, ErrorGoal, ErrorOf, Goal, Plan, Reached, Settings, StoppedBy, Variant, choose_cells, trace,
+    trace_until, warnings,
+};
 pub use sequence::Sequence;
 // Results:
 pub use estimate::extremes::Interval;

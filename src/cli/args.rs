@@ -21,6 +21,23 @@ pub struct RenderArgs {
     /// Photons in all, like 4_456_448, 4.5e6 or 2^22 [default: the scene's, else 2^22].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub photons: Option<String>,
+    /// Stop when this relative standard error (one sigma) is reached, in percent, like 1 or 0.5%; --photons is then the most
+    /// [default: 2^38], and there are 32 replicates unless others are asked for. Exit with 3 where it is not reached.
+    #[arg(long, value_name = "PERCENT", allow_hyphen_values = true, conflicts_with = "map")]
+    pub error: Option<String>,
+    /// What --error is of: cells (root mean square by area, relative to the mean; the default), flux, mean or max. Of several
+    /// receivers all are to reach it.
+    #[arg(long, value_name = "WHAT", requires = "error")]
+    pub error_of: Option<String>,
+    /// Stop after this time, like 90 (seconds), 10min or 1.5h, counted from the start of the command.
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true, conflicts_with = "map")]
+    pub time: Option<String>,
+    /// Go on from the state that an earlier run left in DIR (run.state); with more --photons or --replicates these are added.
+    #[arg(long, conflicts_with = "map")]
+    pub resume: bool,
+    /// Trace the Kth of N parts of the run alone, into DIR/part-K.state; `caustix merge` adds the parts up.
+    #[arg(long, value_name = "K/N", allow_hyphen_values = true, conflicts_with = "map")]
+    pub part: Option<String>,
     /// Algorithm variant: mc, qmc, qmc-inverse or qmc-inverse-reuse (default); mc and qmc reject inside
     /// the table's cell; mc:table against its maximum, mc:next-point the same with retries from the next point.
     #[arg(long, value_name = "V")]

@@ -22,7 +22,7 @@ use crate::scene::{Scene, requires::requirements};
 
 use super::deadline::{flagged, or_end};
 use super::progress::Progress;
-use super::render::{say_found, strictly};
+use super::written::{say_found, strictly};
 use super::{CheckArgs, Done, exit, fail, print, render, say, warn};
 
 #[derive(Debug, Default, Serialize)]

@@ -13,29 +13,16 @@ use crate::report::numbers::printable;
 
 use super::Command;
 
-/// What is not built, and what there is instead.
-const INSTEAD: [(&str, &str); 3] = [
-    ("--error", "--photons N sets the effort; the summary and report.json tell the standard errors it gave"),
-    ("--time", "--photons N sets the effort; Ctrl-C ends a run early and writes what there is"),
-    (
-        "--resume",
-        "a run starts with its first photon; `caustix compare` goes on from the parts it has finished",
-    ),
-];
-
 /// Adds to an argument that is not known what there is instead.
 pub(super) fn with_tip(mut error: clap::Error) -> clap::Error {
     let Some(ContextValue::String(found)) = error.get(ContextKind::InvalidArg) else { return error };
     let is_unknown = error.kind() == ErrorKind::UnknownArgument;
-    let tip = match INSTEAD.iter().find(|(unbuilt, _)| unbuilt == found) {
-        Some((_, instead)) => (*instead).to_string(),
-        None if !is_unknown || error.get(ContextKind::SuggestedArg).is_some() => return error,
-        None if found.starts_with('-') => match with_option(found) {
-            Some(command) => format!("`caustix {command}` has {found}"),
-            None => "`--help` lists the options".to_string(),
-        },
-        None if Path::new(found).exists() => "one file is read at a time".to_string(),
-        None => "names and numbers with spaces stand in quotes, and long options have two dashes".to_string(),
+    let tip = match with_option(found) {
+        _ if !is_unknown || error.get(ContextKind::SuggestedArg).is_some() => return error,
+        Some(command) if found.starts_with('-') => format!("`caustix {command}` has {found}"),
+        None if found.starts_with('-') => "`--help` lists the options".to_string(),
+        _ if Path::new(found).exists() => "one file is read at a time".to_string(),
+        _ => "names and numbers with spaces stand in quotes, and long options have two dashes".to_string(),
     };
     error.remove(ContextKind::SuggestedArg);
     error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));

@@ -3,10 +3,13 @@
 mod args;
 mod deadline;
 mod far_field;
+mod long;
 mod misuse;
 mod progress;
 mod results;
+mod part;
 mod picture;
+mod written;
 #[cfg(feature = "mpi")]
 mod ranks;
 mod render;
@@ -43,6 +46,8 @@ pub mod exit {
     pub const WRONG: u8 = 1;
     /// Usage.
     pub const USAGE: u8 = 2;
+    /// Stopped before the error that was asked for was reached; what there is was written.
+    pub const UNMET: u8 = 3;
     /// With --strict: a warning of severity "untrusted".
     pub const UNTRUSTED: u8 = 4;
     /// Interrupted; what there is was written.
@@ -73,6 +78,8 @@ enum Sub {
     Check(CheckArgs),
     /// Measure the error of every algorithm variant against a reference (without SCENE: the built-in scene).
     Compare(compare::CompareArgs),
+    /// Add up the parts of a run (`render --part K/N`) to the results of the whole.
+    Merge(part::MergeArgs),
     /// Sample directions of a photometric file, and judge them against its candela.
     Sample(SampleArgs),
     /// Say what a scattering table (BSDF) holds: kind, angles, albedo against incidence, reciprocity.
@@ -120,6 +127,7 @@ pub fn main() -> ExitCode {
         Ok(Sub::Photometry(args)) => photometry::run(&args),
         Ok(Sub::Check(args)) => check::run(&args),
         Ok(Sub::Compare(args)) => compare::run(&args),
+        Ok(Sub::Merge(args)) => part::merge(&args),
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
         Ok(Sub::Completions(args)) => shell::completions(&args),

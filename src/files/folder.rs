@@ -35,6 +35,8 @@ pub struct Folder {
     path: PathBuf,
     /// `None` where the file system knows no locks.
     lock: Option<File>,
+    /// The name of the file that is locked.
+    locked: String,
     is_new: bool,
     cleared: usize,
     /// The list that a run which was ended had ready, and did not come to write.
@@ -47,15 +49,24 @@ impl Folder {
     /// # Errors
     /// A folder that cannot be made or written to, or that another run has.
     pub fn take(path: &Path, required: &str) -> Result<Self> {
-        let is_new = !path.exists();
-        make_directory(path, required)?;
-        let lock = lock(path)?;
-        let mut folder = Self { path: path.to_path_buf(), lock, is_new, cleared: 0, torn: None };
+        let mut folder = Self::take_part(path, LOCK, required)?;
         // Without locks, what looks left may be another's.
         if folder.lock.is_some() {
             folder.clear();
         }
         Ok(folder)
+    }
+
+    /// Makes the folder where it is not there, for a run that writes one file into it, beside others that do so: the lock of
+    /// this name keeps out a second one of the same file.
+    ///
+    /// # Errors
+    /// As [`Self::take`].
+    pub fn take_part(path: &Path, locked: &str, required: &str) -> Result<Self> {
+        let is_new = !path.exists();
+        make_directory(path, required)?;
+        let lock = lock(path, locked)?;
+        Ok(Self { path: path.to_path_buf(), lock, locked: locked.to_owned(), is_new, cleared: 0, torn: None })
     }
 
     fn clear(&mut self) {
@@ -136,7 +147,7 @@ impl Drop for Folder {
         // On Unix a file may be unlinked while it is locked; whoever waits for the lock looks whether it is still the one of
         // that name. Elsewhere it stays.
         if cfg!(unix) && self.lock.is_some() {
-            fs::remove_file(self.path.join(LOCK)).ok();
+            fs::remove_file(self.path.join(&self.locked)).ok();
         }
         if self.is_new {
             // Fails where results are in it.
@@ -154,8 +165,8 @@ pub(super) fn listed(manifest: &Path) -> Vec<String> {
 }
 
 /// Locks the folder; `None` where its file system has no locks.
-fn lock(folder: &Path) -> Result<Option<File>> {
-    let path = folder.join(LOCK);
+fn lock(folder: &Path, name: &str) -> Result<Option<File>> {
+    let path = folder.join(name);
     let io = |e: io::Error| {
         let found = format!("\"{e}\" while locking the folder");
         Diagnostic::new(Kind::Io, found, "a folder that can be written to").in_file(folder)

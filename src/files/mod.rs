@@ -27,6 +27,7 @@ pub mod photometric;
 pub mod photon_map;
 #[cfg(feature = "plots")]
 pub mod png;
+pub mod run_state;
 pub mod scene_toml;
 pub mod set;
 pub(crate) mod suggest;

@@ -8,7 +8,7 @@ use crate::error::warning::{Severity, Warning};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::SurfaceId;
 use crate::run::warnings::TRAPPED;
-use crate::run::{Estimate, Outcome, Plan, StoppedBy, warnings};
+use crate::run::{Estimate, Outcome, Plan, Reached, StoppedBy, warnings};
 use crate::sample::coordinates::Purpose;
 use crate::scene::Scene;
 use crate::scene::far_field::FarField;
@@ -51,10 +51,32 @@ pub struct Report<'a> {
     /// The camera, where the scene has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraReport>,
-    /// "photons" or "interrupt".
+    /// "photons", "interrupt", "error" or "time".
     pub stopped_by: &'static str,
+    /// The error that the run was to reach; absent where none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopping: Option<StoppingReport>,
     /// What must be known beside the numbers: about the run, the gravest first, then about the scene and its files.
     pub warnings: Vec<Warning>,
+}
+
+/// An error that a run was to reach.
+#[derive(Debug, Clone, Serialize)]
+pub struct StoppingReport {
+    /// What it is of: "flux", "mean", "cells" or "max".
+    pub error_of: &'static str,
+    /// The relative standard error that was asked for, as a fraction.
+    pub asked: f64,
+    /// What it is, of the receiver where it is largest; `null` where it is not known.
+    pub reached: Option<f64>,
+    /// Whether it is as small as was asked for.
+    pub met: bool,
+}
+
+impl From<&Reached> for StoppingReport {
+    fn from(of: &Reached) -> Self {
+        Self { error_of: of.of.name(), asked: of.asked, reached: of.error, met: of.is_met() }
+    }
 }
 
 /// What stands at the head of every report.json.
@@ -337,7 +359,10 @@ impl<'a> Report<'a> {
             stopped_by: match outcome.stopped_by {
                 StoppedBy::Photons => "photons",
                 StoppedBy::Interrupt => "interrupt",
+                StoppedBy::Error => "error",
+                StoppedBy::Time => "time",
             },
+            stopping: outcome.reached.as_ref().map(StoppingReport::from),
             warnings,
         }
     }

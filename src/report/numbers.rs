@@ -64,6 +64,11 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// A fraction in percent, with three significant digits.
+pub fn percent(fraction: f64) -> String {
+    rounded(100.0 * fraction, 3)
+}
+
 /// A measured value with three significant digits, whole numbers from 1000 on; "-" for NaN.
 pub fn three_digits(value: f64) -> String {
     let size = value.abs();

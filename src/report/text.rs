@@ -4,10 +4,10 @@ use std::fmt::{Result, Write};
 
 use crate::estimate::extremes::Interval;
 use crate::run::pilot::{CELL_ERROR, is_at_bound};
-use crate::run::{Estimate, Outcome, StoppedBy};
+use crate::run::{Estimate, Outcome, Reached, StoppedBy};
 use crate::scene::Scene;
 
-use super::numbers::{digits, grouped, rounded, with_error, written};
+use super::numbers::{digits, grouped, percent, rounded, with_error, written};
 use super::statistics::{GridStatistics, ReceiverStatistics};
 use super::uniformity::Uniformity;
 use super::unknown::why_no_error;
@@ -36,6 +36,7 @@ pub fn summary(
             let asked = grouped(plan.photons());
             writeln!(out, "           stopped by an interrupt; {asked} photons were asked for")?;
         }
+        write_end(out, outcome)?;
         for ((receiver, s), files) in scene.receivers.iter().zip(statistics).zip(files) {
             write_receiver(out, &receiver.name, s, files)?;
         }
@@ -68,6 +69,26 @@ pub fn summary(
         }
         Ok(())
     })
+}
+
+/// What ended a run that had something else to reach than its photons.
+fn write_end(out: &mut String, outcome: &Outcome) -> Result {
+    let why = match (outcome.stopped_by, &outcome.reached) {
+        (StoppedBy::Error, _) => "the error is reached",
+        (StoppedBy::Time, _) => "the time is over",
+        (_, Some(_)) => "all photons are traced",
+        (_, None) => return Ok(()),
+    };
+    let Some(Reached { of, asked, error }) = &outcome.reached else {
+        return writeln!(out, "stopped    {why}");
+    };
+    let error = error.map_or("not known".into(), |error| format!("{} %", percent(error)));
+    writeln!(
+        out,
+        "stopped    {why}: standard error of {} {error}, {} % asked for",
+        of.name(),
+        percent(*asked)
+    )
 }
 
 fn write_receiver(out: &mut String, name: &str, s: &ReceiverStatistics, files: &[String]) -> Result {

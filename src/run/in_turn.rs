@@ -59,7 +59,9 @@ pub fn trace_by(
             break;
         }
     }
-    outcome.finished(scene, started, first_stage(plan))
+    let mut outcome = outcome.finished(scene, first_stage(plan))?;
+    outcome.trace_s = started.elapsed().as_secs_f64();
+    Ok(outcome)
 }
 
 /// Photons of the first stage of the first replicate.

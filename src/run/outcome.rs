@@ -1,6 +1,6 @@
 //! What a run found: sums over replicates, and the numbers with their standard errors that come of them.
 
-use std::time::Instant;
+use std::collections::BTreeMap;
 
 use crate::error::{Diagnostic, Kind};
 use crate::estimate::extremes::{Extremes, Interval, Map, Unknown};
@@ -13,6 +13,7 @@ use crate::tally::{Moments, Receivers};
 use crate::transport::parallel::Traced;
 use crate::transport::{Census, Ledger};
 
+use super::goal::ErrorOf;
 use super::plan::Plan;
 
 /// Why a run ended.
@@ -20,6 +21,10 @@ use super::plan::Plan;
 pub enum StoppedBy {
     /// All photons are traced.
     Photons,
+    /// The error that was asked for is reached.
+    Error,
+    /// The time that was given is over.
+    Time,
     /// It was interrupted; what is here are the first 2^m photons of every replicate. Where replicates are traced one
     /// after another: those finished by then, or, before the first was, the first 2^m photons of it.
     Interrupt,
@@ -65,6 +70,29 @@ pub struct Outcome {
     pub trace_s: f64,
     /// Why it ended.
     pub stopped_by: StoppedBy,
+    /// The error that it was to reach, where it was.
+    pub reached: Option<Reached>,
+    /// Photons of each replicate on each receiver among those with an index below 2^k, by k; empty where replicates were traced
+    /// one after another.
+    pub(crate) doublings: BTreeMap<u32, Vec<Vec<u64>>>,
+}
+
+/// An error that was asked for, and what came of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    /// What it is of.
+    pub of: ErrorOf,
+    /// The relative standard error that was asked for, as a fraction.
+    pub asked: f64,
+    /// What it is now, of the receiver where it is largest; `None` where it is not known.
+    pub error: Option<f64>,
+}
+
+impl Reached {
+    /// Whether the error is as small as was asked for.
+    pub fn is_met(&self) -> bool {
+        self.error.is_some_and(|error| error <= self.asked)
+    }
 }
 
 /// What one replicate counted in all: of it come errors of differences between runs of the same points, and what the spread
@@ -109,6 +137,8 @@ impl Outcome {
             census: Census::default(),
             trace_s: 0.0,
             stopped_by: StoppedBy::Photons,
+            reached: None,
+            doublings: BTreeMap::new(),
         }
     }
 
@@ -132,7 +162,7 @@ impl Outcome {
         let others = [ledger.escaped, ledger.killed, ledger.total_trapped()];
         let accounts: Vec<u64> = ledger.absorbed.iter().copied().chain(others).collect();
         self.accounts.absorb(accounts.iter().copied());
-        let on_receivers: Vec<u64> = (0..self.cells.len()).map(|r| receivers.counts(r).total()).collect();
+        let on_receivers = receivers.totals();
         self.totals.absorb(on_receivers.iter().copied());
         self.by_replicate.push(ReplicateTotals { receivers: on_receivers, accounts });
         let refused = [
@@ -180,12 +210,7 @@ impl Outcome {
     ///
     /// # Errors
     /// An interrupt before there was a result, for which it takes `fewest` photons.
-    pub(super) fn finished(
-        mut self,
-        scene: &Scene,
-        started: Instant,
-        fewest: u64,
-    ) -> crate::error::Result<Self> {
+    pub(super) fn finished(mut self, scene: &Scene, fewest: u64) -> crate::error::Result<Self> {
         if self.photons == 0 {
             return Err(Diagnostic::new(
                 Kind::Interrupted,
@@ -194,7 +219,6 @@ impl Outcome {
             ));
         }
         self.photon_lm = scene.emitters.flux_lm() / self.photons as f64;
-        self.trace_s = started.elapsed().as_secs_f64();
         Ok(self)
     }
 

@@ -1,27 +1,21 @@
-//! All replicates of a run, advanced together.
+//! A run of replicates together, from block to block: until its photons are traced, its error is reached, its time is over, or
+//! somebody stops it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
-
-use rayon::prelude::*;
+use std::time::{Duration, Instant};
 
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::tally::Receivers;
-use crate::transport::parallel::Traced;
 
+use super::goal::{ErrorGoal, Goal, Looks};
 use super::in_turn::trace_by;
-use super::kept::{are_kept, check_kept, counters};
-use super::outcome::{Outcome, StoppedBy};
+use super::kept::are_kept;
+use super::outcome::{Outcome, Reached, StoppedBy};
 use super::plan::Plan;
+use super::schedule::Schedule;
+use super::together::{COUNTERS_PER_PHOTON, Together, Watched};
 use super::tracer::Tracer;
-
-/// Photons of the first stage, over all replicates.
-const FIRST_STAGE: u64 = 1 << 13;
-
-/// A stage is summed up for an interrupt to fall back on when it has this many photons for each counter: a photon
-/// takes some hundred times as long as the sum over a counter, so that all sums take about a percent of the time.
-const PHOTONS_PER_COUNTER: f64 = 0.125;
 
 /// Traces a scene by a plan, on the current rayon pool. Setting `interrupt` ends the run early; `progress` is
 /// told numbers of photons as they are done.
@@ -38,93 +32,154 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    check_kept(scene, plan)?;
-    if !together(scene, plan) {
+    if !is_together(scene, plan) {
         let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
             tracer.trace(end, receivers, interrupt, progress)
         };
         return trace_by(scene, plan, stage, interrupt);
     }
-    let started = Instant::now();
-    let mut replicas: Vec<Replica<'_>> =
-        (0..plan.replicates()).map(|r| Replica::new(scene, plan, r)).collect();
-    let mut outcome = Outcome::new(scene, plan);
-    let counters = counters(scene, plan) as f64;
-    let stages = stages(plan);
-    for (i, &end) in stages.iter().enumerate() {
-        // Threads that one replicate leaves idle go on with the next.
-        replicas.par_iter_mut().try_for_each(|replica| replica.trace(end, interrupt, progress))?;
-        if replicas.iter().any(|replica| !replica.traced.complete) {
-            outcome.stopped_by = StoppedBy::Interrupt;
-            break;
-        }
-        let is_last = i + 1 == stages.len();
-        let photons = end * u64::from(plan.replicates());
-        let is_over = is_last || interrupt.load(Ordering::Relaxed);
-        if i == 0 || is_over || photons as f64 >= PHOTONS_PER_COUNTER * counters {
-            outcome.replace(replicas.iter().map(|replica| (&replica.traced, &replica.receivers)));
-        }
-        if is_over && !is_last {
-            outcome.stopped_by = StoppedBy::Interrupt;
-            break;
-        }
+    let watched = Watched { interrupt, progress };
+    Course::new(Together::new(scene, plan)?).run(Goal::default(), watched, &mut Unkept)
+}
+
+/// The same until an error is reached or a time is over, whichever comes first, with the plan's photons as the most.
+///
+/// # Errors
+/// Those of [`trace`] and of [`ErrorGoal::check`].
+pub fn trace_until(
+    scene: &Scene,
+    plan: &Plan,
+    goal: Goal,
+    interrupt: &AtomicBool,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Outcome> {
+    if let Some(error) = &goal.error {
+        error.check(scene, plan)?;
     }
-    outcome.finished(scene, started, stages[0] * u64::from(plan.replicates()))
+    let watched = Watched { interrupt, progress };
+    Course::new(Together::new(scene, plan)?).run(goal, watched, &mut Unkept)
 }
 
 /// Whether the replicates of a run advance together: unless their maps take more than a gibibyte, or the points are
 /// made for their number, so that a first part of them is no sample.
-fn together(scene: &Scene, plan: &Plan) -> bool {
+pub fn is_together(scene: &Scene, plan: &Plan) -> bool {
     are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
 }
 
-/// A replicate as far as it is traced.
-struct Replica<'s> {
-    tracer: Tracer<'s>,
-    receivers: Receivers<'s>,
-    traced: Traced,
+/// A run on its way.
+#[derive(Debug)]
+pub struct Course<'s> {
+    /// What is traced.
+    pub run: Together<'s>,
+    /// The looks at its error.
+    pub looks: Looks,
+    /// Time of tracing, earlier runs that it goes on from included, s.
+    pub trace_s: f64,
 }
 
-impl<'s> Replica<'s> {
-    fn new(scene: &'s Scene, plan: &Plan, replicate: u32) -> Self {
-        let (seed, n) = (plan.seed(), plan.photons_per_replicate());
-        Self {
-            tracer: Tracer::new(scene, plan.algorithm(), seed, replicate, n),
-            receivers: Receivers::of_scene(scene, n),
-            traced: Traced::new(scene),
+/// What is told of a run, and kept of it, between blocks.
+pub trait Keep {
+    /// Keeps what there is; a run asks for it so seldom that it costs no more than a percent of its time.
+    fn keep(&mut self, course: &Course<'_>);
+
+    /// Told after every look: the error, what is asked for, and how long it may take, s.
+    fn look(&mut self, error: f64, asked: f64, left_s: Option<f64>);
+}
+
+/// Nothing is kept.
+#[derive(Debug)]
+pub struct Unkept;
+
+impl Keep for Unkept {
+    fn keep(&mut self, _: &Course<'_>) {}
+    fn look(&mut self, _: f64, _: f64, _: Option<f64>) {}
+}
+
+/// What there is is kept after a second, and then when a hundred times as long as it takes has gone by.
+const FIRST_KEPT: Duration = Duration::from_secs(1);
+const KEEPING_PART: u32 = 100;
+
+impl<'s> Course<'s> {
+    /// From the first photon, or from where `run` is.
+    pub fn new(run: Together<'s>) -> Self {
+        Self { run, looks: Looks::default(), trace_s: 0.0 }
+    }
+
+    /// Runs to the end.
+    ///
+    /// # Errors
+    /// Interrupted before there was a result; a ledger that does not balance.
+    pub fn run(mut self, goal: Goal, watched: Watched<'_>, keep: &mut impl Keep) -> Result<Outcome> {
+        let (started, earlier_s) = (Instant::now(), self.trace_s);
+        let mut outcome = Outcome::new(self.run.scene(), self.run.plan());
+        let replicates = u64::from(self.run.plan().replicates());
+        let mut schedule = Schedule::new(&self.run, &goal);
+        let (mut kept, mut keeping) = (started, Duration::ZERO);
+        if self.run.photons() > 0 && self.run.done() == self.run.farthest() {
+            self.run.sum_up(&mut outcome);
         }
-    }
-
-    fn trace(&mut self, end: u64, interrupt: &AtomicBool, progress: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let more = self.tracer.trace(end, &self.receivers, interrupt, progress)?;
-        self.traced.merge(&more);
-        Ok(())
-    }
-}
-
-/// The numbers of photons of a replicate at which a run pauses, each twice the one before: a first part of them is a
-/// net of 2^m points, while within a stage the order follows the first coordinate, so that a part of it would be a part
-/// of the emitter's directions, not a sample of them.
-fn stages(plan: &Plan) -> Vec<u64> {
-    let share = FIRST_STAGE.div_ceil(u64::from(plan.replicates())).next_power_of_two().max(32);
-    plan.doublings(share).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::run::Settings;
-
-    #[test]
-    fn stages_double_from_a_first_one_that_all_replicates_share() {
-        let of = |n: u64, replicates: u32| {
-            let photons = Some(n * u64::from(replicates));
-            let settings = Settings { photons, replicates: Some(replicates), ..Settings::default() };
-            stages(&Plan::new(&settings).unwrap())
+        let stopped_by = loop {
+            if self.has_reached(goal.error) {
+                break StoppedBy::Error;
+            }
+            if self.run.is_done() {
+                break StoppedBy::Photons;
+            }
+            let Some(end) = schedule.next(&self.run) else { break StoppedBy::Time };
+            let (before, block) = (self.run.photons(), Instant::now());
+            if !self.run.trace(end, watched)? {
+                break StoppedBy::Interrupt;
+            }
+            schedule.measure(self.run.photons() - before, block.elapsed());
+            self.trace_s = earlier_s + started.elapsed().as_secs_f64();
+            let is_over = self.run.is_done() || watched.interrupt.load(Ordering::Relaxed);
+            let is_look = goal.error.is_some() && schedule.is_look(&self.run);
+            // A sum over all counters for each that takes a percent of the time of the photons since the last.
+            let news = (self.run.photons() - outcome.photons).saturating_mul(COUNTERS_PER_PHOTON);
+            if is_over || is_look || outcome.photons == 0 || news >= self.run.counters() {
+                self.run.sum_up(&mut outcome);
+            }
+            if let Some(goal) = goal.error.filter(|_| is_look) {
+                self.look(&goal, &outcome, &schedule, keep);
+            }
+            if is_over && !self.run.is_done() {
+                keep.keep(&self);
+                break StoppedBy::Interrupt;
+            }
+            if kept.elapsed() >= FIRST_KEPT.max(keeping * KEEPING_PART) && !self.run.is_done() {
+                let begun = Instant::now();
+                keep.keep(&self);
+                (kept, keeping) = (Instant::now(), begun.elapsed());
+            }
         };
-        assert_eq!(of(1 << 13, 8), [1 << 10, 1 << 11, 1 << 12, 1 << 13]);
-        assert_eq!(of(5000, 6), [2048, 4096, 5000]);
-        assert_eq!((of(1000, 8), of(1024, 8)), (vec![1000], vec![1024]));
-        assert_eq!(of(100, 1 << 12), [32, 64, 100]);
+        if stopped_by != StoppedBy::Interrupt {
+            if outcome.photons < self.run.photons() {
+                self.run.sum_up(&mut outcome);
+            }
+            keep.keep(&self);
+        }
+        outcome.stopped_by = stopped_by;
+        outcome.doublings = self.run.doublings();
+        outcome.reached = goal.error.map(|goal| Reached {
+            of: goal.of(),
+            asked: goal.relative(),
+            error: goal.measured(self.run.scene(), &outcome),
+        });
+        let mut outcome = outcome.finished(self.run.scene(), schedule.first() * replicates)?;
+        outcome.trace_s = self.trace_s;
+        Ok(outcome)
+    }
+
+    fn has_reached(&self, error: Option<ErrorGoal>) -> bool {
+        error.is_some_and(|goal| self.looks.are_enough(goal.relative()))
+    }
+
+    fn look(&mut self, goal: &ErrorGoal, outcome: &Outcome, schedule: &Schedule, keep: &mut impl Keep) {
+        let error = goal.measured(self.run.scene(), outcome).unwrap_or(f64::INFINITY);
+        self.looks.take(self.run.done(), error);
+        let photons = self.looks.expected(goal.relative());
+        let each = photons.map(|n| n.saturating_sub(self.run.done()) as f64);
+        let all = each.map(|n| n * f64::from(self.run.plan().replicates()));
+        keep.look(error, goal.relative(), all.and_then(|n| Some(n / schedule.photons_per_s()?)));
     }
 }

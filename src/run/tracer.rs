@@ -82,6 +82,16 @@ impl<'s> Tracer<'s> {
         Self { scene, algorithm, points, photons: 0, attempts: 0 }
     }
 
+    /// Points used so far.
+    pub fn attempts(&self) -> u64 {
+        self.attempts
+    }
+
+    /// Goes on from this photon and this point, which another tracer came to, or which it left out.
+    pub(super) fn move_to(&mut self, photons: u64, attempts: u64) {
+        (self.photons, self.attempts) = (photons, attempts);
+    }
+
     /// Traces up to photon number `until`.
     ///
     /// # Errors

@@ -58,6 +58,8 @@ pub struct Identity {
     /// SHA-256 of all that light depends on: everything but the camera, in a form that comments, layout and ways of writing
     /// a number do not change.
     pub light: String,
+    /// SHA-256 of all that the results of given settings depend on, in the same form: everything but `[run]`.
+    pub results: String,
 }
 
 /// A scene ready to be traced.

@@ -1,8 +1,11 @@
 //! Counters of one replicate that threads share, and the sums over replicates.
 
+use std::io::{self, Read, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
+
+use crate::math::varint;
 
 /// Cells that one task sums: large enough that its bookkeeping costs nothing.
 const CHUNK: usize = 1 << 14;
@@ -43,6 +46,30 @@ impl Counts {
         for c in &mut self.0 {
             *c.get_mut() = 0;
         }
+    }
+
+    /// Writes all counts.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        varint::put(out, [self.0.len() as u64])?;
+        varint::put(out, self.iter())
+    }
+
+    /// Adds counts that were written.
+    ///
+    /// # Errors
+    /// Those of the reader; another number of counters; counts that no run has.
+    pub fn add_from(&self, from: &mut dyn Read) -> io::Result<()> {
+        varint::expect(from, self.0.len() as u64, "counters")?;
+        for counter in &self.0 {
+            let more = varint::take(from)?;
+            if counter.fetch_add(more, Ordering::Relaxed).checked_add(more).is_none() {
+                return Err(varint::damaged("a count of more than 64 bits"));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -139,6 +166,23 @@ mod tests {
         replicates.iter().for_each(|counts| in_turn.absorb(counts.iter()));
         assert_eq!(at_once, in_turn);
         assert_eq!(replicates[1].total(), replicates[1].iter().sum::<u64>());
+    }
+
+    #[test]
+    fn what_is_written_is_added() {
+        let counts = Counts::new(3);
+        [(0, 5), (2, 1 << 40)].into_iter().for_each(|(cell, n)| counts.add(cell, n));
+        let mut bytes = Vec::new();
+        counts.write(&mut bytes).unwrap();
+        let sum = Counts::new(3);
+        sum.add_from(&mut &bytes[..]).unwrap();
+        sum.add_from(&mut &bytes[..]).unwrap();
+        assert_eq!(sum.iter().collect::<Vec<_>>(), [10, 0, 2 << 40]);
+        // Of another map, cut short, and beyond 64 bits.
+        assert!(Counts::new(4).add_from(&mut &bytes[..]).is_err());
+        assert!(sum.add_from(&mut &bytes[..bytes.len() - 1]).is_err());
+        sum.add(0, u64::MAX - 20);
+        assert!(sum.add_from(&mut &bytes[..]).is_err());
     }
 
     #[test]

@@ -76,6 +76,16 @@ impl<'s> FarFields<'s> {
         &self.seen
     }
 
+    /// All of its counters, in a fixed order.
+    pub(super) fn counts(&self) -> impl Iterator<Item = &Counts> {
+        self.nodes.iter().chain([&self.outside, &self.seen])
+    }
+
+    /// Units of a photon.
+    pub fn units_of_a_photon(&self) -> u64 {
+        self.one
+    }
+
     /// Zeros again.
     pub(super) fn clear(&mut self) {
         self.outside.clear();

@@ -4,6 +4,8 @@
 //! it asks for. A rectangle, sphere or paraboloid has cells in its (u, v); the pixel of row 0, column 0 is
 //! the (u = 0, v = 1) corner. A mesh has a cell a face.
 
+use std::io::{self, Read, Write};
+
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit, SurfaceId};
@@ -150,6 +152,11 @@ impl<'s> Receivers<'s> {
         &self.counts[receiver]
     }
 
+    /// Photons on each receiver.
+    pub fn totals(&self) -> Vec<u64> {
+        self.counts.iter().map(Counts::total).collect()
+    }
+
     /// Counts of a receiver's evaluation grid, row by row from the top left.
     pub fn grid(&self, receiver: usize) -> Option<&Counts> {
         self.grids[receiver].as_ref()
@@ -173,6 +180,30 @@ impl<'s> Receivers<'s> {
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
     pub fn other_events(&self) -> &Counts {
         &self.other_events
+    }
+
+    /// All counters but those of spots, in a fixed order.
+    fn all_counts(&self) -> impl Iterator<Item = &Counts> {
+        let of_receivers = self.counts.iter().chain(self.grids.iter().flatten());
+        of_receivers.chain(self.far_fields.counts()).chain([&self.turned_away, &self.other_events])
+    }
+
+    /// Writes everything that was counted.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.all_counts().try_for_each(|counts| counts.write(out))?;
+        self.spots.iter().flatten().try_for_each(|spot| spot.write(out))
+    }
+
+    /// Adds what was written, of the same receivers.
+    ///
+    /// # Errors
+    /// Those of the reader; counters of other receivers.
+    pub fn add_from(&self, from: &mut dyn Read) -> io::Result<()> {
+        self.all_counts().try_for_each(|counts| counts.add_from(from))?;
+        self.spots.iter().flatten().try_for_each(|spot| spot.add_from(from))
     }
 
     /// Sets everything to zero, for the next replicate.

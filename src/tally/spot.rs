@@ -3,6 +3,9 @@
 //! A place is a whole number of 2^-32 of an edge. The sums of u, v and their squares are of 128 bits: no number of photons
 //! below 2^64 overflows them, and none depends on the order.
 
+use std::io::{self, Read, Write};
+
+use crate::math::varint;
 use crate::scene::spot::Spot;
 
 use super::counts::Counts;
@@ -65,6 +68,29 @@ impl SpotTally {
         }
     }
 
+    /// Writes what there is.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.cells.write(out)?;
+        let SpotCount { first: [u, v], second: [uu, vv], .. } = self.counted();
+        varint::put(out, [u, v, uu, vv].into_iter().flat_map(|sum| [sum as u64, (sum >> 64) as u64]))
+    }
+
+    /// Adds what was written.
+    ///
+    /// # Errors
+    /// Those of the reader; sums of another spot.
+    pub fn add_from(&self, from: &mut dyn Read) -> io::Result<()> {
+        self.cells.add_from(from)?;
+        for sum in &self.shards[0] {
+            let (low, high) = (varint::take(from)?, varint::take(from)?);
+            sum.add(u128::from(high) << 64 | u128::from(low));
+        }
+        Ok(())
+    }
+
     /// Zeros again.
     pub fn clear(&mut self) {
         self.cells.clear();
@@ -101,6 +127,12 @@ mod tests {
         assert_eq!(counted.second, [most * most + 2 * half * half, most * most + 2 * quarter * quarter]);
         let at = |column: usize, row: usize| counted.cells[row * 1024 + column];
         assert_eq!((at(0, 0), at(1023, 511), at(512, 128)), (1, 1, 2));
+        let mut bytes = Vec::new();
+        tally.write(&mut bytes).unwrap();
+        tally.add_from(&mut &bytes[..]).unwrap();
+        let twice = tally.counted();
+        assert_eq!((twice.photons, twice.first[0]), (8, 2 * counted.first[0]));
+        assert_eq!(twice.second, counted.second.map(|sum| 2 * sum));
         tally.clear();
         let empty = tally.counted();
         assert_eq!((empty.photons, empty.first, empty.second), (0, [0; 2], [0; 2]));

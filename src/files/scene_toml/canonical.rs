@@ -1,5 +1,5 @@
-//! A scene's text without what light does not depend on: comments, layout, the order of keys, ways of writing a number, the
-//! camera. Two texts that differ in these alone have the same form, so photons that were kept serve both.
+//! A scene's text without what light does not depend on: comments, layout, the order of keys, ways of writing a number, and a
+//! table such as the camera. Two texts that differ in these alone have the same form, so photons that were kept serve both.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use toml::de::{DeTable, DeValue};
 /// Gives the hash of the content of the file of this name.
 type HashOf<'h> = &'h dyn Fn(&str) -> Option<String>;
 
-/// The values of a TOML text but for `[camera]`, keys sorted. A file, named by `file` or `image`, stands for its content, of which
+/// The values of a TOML text but for one table, keys sorted. A file, named by `file` or `image`, stands for its content, of which
 /// `hash_of` gives the hash. A text that is no TOML stays as it is.
-pub(crate) fn canonical(text: &str, hash_of: HashOf<'_>) -> String {
+pub(crate) fn canonical(text: &str, without: &str, hash_of: HashOf<'_>) -> String {
     let body = text.strip_prefix('\u{feff}').unwrap_or(text);
     match DeTable::parse(body) {
-        Ok(root) => of_table(root.get_ref(), "camera", hash_of),
+        Ok(root) => of_table(root.get_ref(), without, hash_of),
         Err(_) => text.to_string(),
     }
 }
@@ -61,7 +61,7 @@ mod tests {
     const CAMERA: &str = "[camera]   # the picture\nposition = [1,\n  2, 3]\n# fov_deg = 3\nexposure = \"\"\"\n[run]\n\"\"\"\n\n";
 
     fn form(text: &str) -> String {
-        canonical(text, &|name| (name == "a.ies").then(|| "HASH".to_owned()))
+        canonical(text, "camera", &|name| (name == "a.ies").then(|| "HASH".to_owned()))
     }
 
     #[test]

@@ -109,13 +109,16 @@ pub fn parse_scene(text: &str, folder: impl Into<PathBuf>) -> Result<Scene, Vec<
     parse(text, "scene", Base::Directory(folder.into()))?.build()
 }
 
+/// The name of the scene inside the program.
+pub const BUILT_IN: &str = "wavy_glass.toml (built in)";
+
 /// The scene inside the program, `scenes/wavy_glass.toml`.
 ///
 /// # Errors
 /// None, as the tests show; they are those of `parse`.
 pub fn built_in() -> Result<SceneFile, Vec<Diagnostic>> {
     let text = include_str!("../../../scenes/wavy_glass.toml");
-    parse(text, "wavy_glass.toml (built in)", Base::BuiltIn)
+    parse(text, BUILT_IN, Base::BuiltIn)
 }
 
 /// Read a scene from its text; no file is opened. `name` is for messages.
@@ -239,8 +242,11 @@ impl SceneFile {
         let hash_of = |path: &str| files.iter().find(|(name, _)| name == path).map(|(_, hash)| hash.clone());
         // Files that others name (tilt) are in the scene, too.
         let contents: BTreeSet<&str> = files.iter().map(|(_, hash)| hash.as_str()).collect();
-        let light = sha256_hex(format!("{}{contents:?}", canonical::canonical(&text, &hash_of)).as_bytes());
-        scene.identity = Identity { name, sha256: sha256_hex(text.as_bytes()), text, files, light };
+        let without = |table: &str| {
+            sha256_hex(format!("{}{contents:?}", canonical::canonical(&text, table, &hash_of)).as_bytes())
+        };
+        let (light, results) = (without("camera"), without("run"));
+        scene.identity = Identity { name, sha256: sha256_hex(text.as_bytes()), text, files, light, results };
         // What the builder found has a place, but no file.
         let found = scene.warnings.into_iter().map(|w| w.in_file(&scene.identity.name));
         scene.warnings = loader.warnings.into_iter().chain(found).collect();

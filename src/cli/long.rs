@@ -1,0 +1,333 @@
+//! Runs that take long: what ends them, what is kept of them, and how they go on.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::run_state::{self, Head, Saved};
+use crate::files::scene_toml::RunDefaults;
+use crate::report::numbers::{duration, grouped, percent};
+use crate::run::replicates::{Course, Keep};
+use crate::run::together::{Together, Watched};
+use crate::run::{ErrorGoal, ErrorOf, Goal, Outcome, Plan, Settings};
+use crate::scene::Scene;
+
+use super::progress::{INTERRUPTED, Progress};
+use super::{RenderArgs, algorithm, count, in_option, say};
+
+/// What the command line asks of a run.
+pub struct Asked<'a> {
+    args: &'a RenderArgs,
+    scene_run: RunDefaults,
+    photons: Option<u64>,
+    error: Option<ErrorGoal>,
+    until: Option<Instant>,
+    /// Which part of how many.
+    pub part: Option<[u32; 2]>,
+}
+
+/// Most parts of a run.
+const MOST_PARTS: u32 = 1 << 16;
+
+impl<'a> Asked<'a> {
+    /// Reads the options.
+    ///
+    /// # Errors
+    /// What cannot be read, and what does not go together.
+    pub fn new(args: &'a RenderArgs, scene_run: RunDefaults, started: Instant) -> Result<Self> {
+        let photons = count("--photons", args.photons.as_ref())?;
+        let part = args.part.as_deref().map(part).transpose()?;
+        let time = args.time.as_deref().map(seconds).transpose()?;
+        let error = error(args)?;
+        if part.is_some() && (error.is_some() || time.is_some()) {
+            let found = "--part with --error or --time";
+            return Err(Diagnostic::new(
+                Kind::Range,
+                found,
+                "--photons alone: parts do not know of each other",
+            ));
+        }
+        // Beyond what a clock can tell there is no end.
+        let until = time.and_then(|time| started.checked_add(time));
+        Ok(Self { args, scene_run, photons, error, until, part })
+    }
+
+    /// That the camera of a scene can have what is asked for.
+    ///
+    /// # Errors
+    /// Options that pictures do not have.
+    pub fn check_camera(&self, scene: &Scene) -> Result<()> {
+        let option = match self {
+            Self { error: Some(_), .. } => "--error",
+            Self { until: Some(_), .. } => "--time",
+            Self { part: Some(_), .. } => "--part",
+            _ => return Ok(()),
+        };
+        if scene.camera.is_none() {
+            return Ok(());
+        }
+        let found = format!("{option} and a scene with [camera]");
+        let required =
+            "a scene without a camera: a picture is made of a number of photons that is known before";
+        Err(Diagnostic::new(Kind::Range, found, required))
+    }
+
+    /// The plan and what ends it: the command line where it speaks, else the state gone on from, else the scene's [run],
+    /// else the defaults.
+    ///
+    /// # Errors
+    /// Settings that do not go together.
+    pub fn plan(&self, head: Option<&Head>) -> Result<(Plan, Goal)> {
+        let Self { args, scene_run, .. } = self;
+        let kept = head.map(Head::settings).transpose()?;
+        // Who asks for a number of photons goes on to that number.
+        let kept_goal = head.and_then(Head::goal).filter(|_| self.photons.is_none());
+        let error = self.error.or(kept_goal);
+        let mut settings = kept.unwrap_or(Settings {
+            photons: scene_run.photons,
+            seed: scene_run.seed.unwrap_or(Settings::default().seed),
+            ..Settings::default()
+        });
+        settings.algorithm = algorithm(settings.algorithm, args.variant.as_ref(), args.sequence.as_ref())?;
+        settings.seed = args.seed.unwrap_or(settings.seed);
+        // A scene's replicates yield to a sequence that can have only one; the command line's do not.
+        let of_scene = scene_run.replicates.filter(|_| settings.algorithm.sequence.is_randomised());
+        let replicates = args.replicates.or(settings.replicates).or(of_scene);
+        settings.photons = self.photons.or_else(|| match (self.error, head) {
+            (Some(_), _) => None,
+            // More replicates are of as many photons each.
+            (None, Some(head)) => head.photons().0.checked_mul(replicates.unwrap_or(head.replicates).into()),
+            (None, None) => settings.photons,
+        });
+        settings.replicates = replicates;
+        if let Some(error) = error.filter(|_| settings.algorithm.sequence.is_randomised()) {
+            settings = error.settings(settings);
+        }
+        Ok((Plan::new(&settings)?, Goal { error, until: self.until }))
+    }
+
+    /// The plan that cells are chosen for: that of a run to an error has as many photons as the error will take, so it is one
+    /// without.
+    ///
+    /// # Errors
+    /// None that the plan of the run has not told.
+    pub fn plan_of_cells(&self, plan: &Plan) -> Result<Plan> {
+        let is_open = self.error.is_some() && self.photons.is_none();
+        if is_open {
+            Plan::new(&Settings { photons: self.scene_run.photons, ..Settings::default() })
+        } else {
+            Ok(*plan)
+        }
+    }
+
+    /// Says where a plan has another number of photons than was asked for.
+    pub fn say_rounding(&self, plan: &Plan) {
+        let of_scene = self.scene_run.photons.filter(|_| !self.args.resume && self.error.is_none());
+        if let Some(asked) = self.photons.or(of_scene).filter(|n| *n != plan.photons()) {
+            let (traced, asked, replicates) = (grouped(plan.photons()), grouped(asked), plan.replicates());
+            say(&format!(
+                "caustix: {traced} photons instead of {asked}: {replicates} replicates of equal size"
+            ));
+        }
+    }
+}
+
+/// The error asked for.
+fn error(args: &RenderArgs) -> Result<Option<ErrorGoal>> {
+    let of = match args.error_of.as_deref() {
+        None => ErrorOf::default(),
+        Some(name) => ErrorOf::from_name(name).ok_or_else(|| {
+            let names = ErrorOf::ALL.map(ErrorOf::name).join(", ");
+            Diagnostic::new(Kind::Unknown, format!("--error-of {name}"), format!("one of: {names}"))
+        })?,
+    };
+    let Some(text) = &args.error else { return Ok(None) };
+    let number = text.trim().strip_suffix('%').unwrap_or(text.trim()).trim_end();
+    let percent = number.parse::<f64>().map_err(|_| {
+        let required = "a standard error in percent, like 1 or 0.5%";
+        let error = Diagnostic::new(Kind::Syntax, format!("--error {text}"), required);
+        if number.contains(',') { error.hint(format!("write {}", number.replace(',', "."))) } else { error }
+    })?;
+    ErrorGoal::new(percent / 100.0, of).map(Some).map_err(|e| in_option(&format!("--error {text}: "), &e))
+}
+
+/// A time like 90, 90s, 10min or 1.5h.
+fn seconds(text: &str) -> Result<Duration> {
+    const UNITS: [(&str, f64); 7] = [
+        ("min", 60.0),
+        ("hours", 3600.0),
+        ("hour", 3600.0),
+        ("h", 3600.0),
+        ("d", 86_400.0),
+        ("s", 1.0),
+        ("m", 60.0),
+    ];
+    let trimmed = text.trim();
+    let unit = UNITS.iter().find_map(|(unit, seconds)| Some((trimmed.strip_suffix(unit)?, seconds)));
+    let (number, unit) = unit.unwrap_or((trimmed, &1.0));
+    let time = number.trim_end().parse::<f64>().ok().map(|number| number * unit);
+    time.filter(|time| *time > 0.0).and_then(|time| Duration::try_from_secs_f64(time).ok()).ok_or_else(|| {
+        let required = "a time above 0: seconds, or like 90s, 10min, 1.5h";
+        Diagnostic::new(Kind::Syntax, format!("--time {text}"), required)
+    })
+}
+
+/// K/N: the Kth of N parts.
+fn part(text: &str) -> Result<[u32; 2]> {
+    let numbers = text.split_once('/').map(|(k, n)| (k.trim().parse::<u32>(), n.trim().parse::<u32>()));
+    match numbers {
+        Some((Ok(k), Ok(n))) if (1..=n).contains(&k) && n <= MOST_PARTS => Ok([k, n]),
+        _ => {
+            let required =
+                format!("K/N: the Kth of N parts, K from 1 to N, N at most {MOST_PARTS}; like 3/16");
+            Err(Diagnostic::new(Kind::Syntax, format!("--part {text}"), required))
+        }
+    }
+}
+
+/// The newest state of this name, as far as there is a whole one; what is wrong with a newer is said.
+///
+/// # Errors
+/// States that are there and all damaged.
+pub fn found(path: &Path) -> Result<Option<Saved>> {
+    let Some((saved, wrong)) = run_state::newest(path)? else {
+        say(&format!("caustix: no {} to go on from: this run starts with its first photon", path.display()));
+        return Ok(None);
+    };
+    if let Some(wrong) = wrong {
+        say(&format!("warning: {wrong}; the state before it, {}, is gone on from", saved.path().display()));
+    }
+    Ok(Some(saved))
+}
+
+/// Why a run keeps no state.
+pub fn why_no_state(scene: &Scene) -> &'static str {
+    match scene.camera {
+        Some(_) => "a picture is made of photons that are not kept",
+        None => "replicates that are traced one after another are not kept",
+    }
+}
+
+/// A run whose state is kept.
+pub struct Job<'a> {
+    pub scene: &'a Scene,
+    pub plan: Plan,
+    pub goal: Goal,
+    /// The file of its state.
+    pub state: &'a Path,
+    pub part_of: Option<[u32; 2]>,
+    pub quiet: bool,
+}
+
+impl Job<'_> {
+    /// Traces it, from a state if there is one.
+    ///
+    /// # Errors
+    /// Those of tracing; a state of another run.
+    pub fn traced(&self, saved: Option<&Saved>) -> Result<Outcome> {
+        let course = match saved {
+            Some(saved) => saved.resumed(self.scene, &self.plan)?,
+            None => Course::new(Together::of_part(self.scene, &self.plan, self.indices())?),
+        };
+        let all = if self.goal.error.is_some() || self.goal.until.is_some() { 0 } else { self.photons() };
+        let progress = Progress::new(self.quiet, "tracing", all);
+        if saved.is_some() {
+            let there = grouped(course.run.photons());
+            progress.suspend(|| {
+                say(&format!("caustix: goes on after {there} photons from {}", self.state.display()))
+            });
+        }
+        progress.inc(course.run.photons());
+        let more = if saved.is_none() { self.more_photons() } else { None };
+        let mut keeper = Keeper { job: self, progress: &progress, is_told: false, more };
+        let photons = |photons| progress.inc(photons);
+        let watched = Watched { interrupt: &INTERRUPTED, progress: &photons };
+        let outcome = course.run(self.goal, watched, &mut keeper);
+        progress.clear();
+        outcome
+    }
+
+    /// The indices of each replicate that it is of.
+    pub fn indices(&self) -> std::ops::Range<u64> {
+        let n = self.plan.photons_per_replicate();
+        let [k, of] = self.part_of.unwrap_or([1, 1]).map(u128::from);
+        let at = |k: u128| (u128::from(n) * k / of) as u64;
+        at(k - 1)..at(k)
+    }
+
+    fn photons(&self) -> u64 {
+        let indices = self.indices();
+        (indices.end - indices.start) * u64::from(self.plan.replicates())
+    }
+
+    /// Photons of a state that lies there, where it has more than a run that starts anew: it stays until this one has as many.
+    fn more_photons(&self) -> Option<u64> {
+        let (saved, _) = run_state::newest(self.state).ok()??;
+        Some(saved.head.photons().1 * u64::from(saved.head.replicates))
+    }
+}
+
+/// Keeps the state of a run.
+struct Keeper<'a> {
+    job: &'a Job<'a>,
+    progress: &'a Progress,
+    /// Whether it was told that the state cannot be written.
+    is_told: bool,
+    /// A state of so many photons is there, and is not replaced by one of fewer.
+    more: Option<u64>,
+}
+
+impl Keep for Keeper<'_> {
+    fn keep(&mut self, course: &Course<'_>) {
+        if !course.run.is_done() && self.more.is_some_and(|photons| course.run.photons() < photons) {
+            return;
+        }
+        let head = Head::of(course, self.job.goal.error, self.job.part_of);
+        match run_state::write(self.job.state, &head, &course.run) {
+            Ok(()) => self.more = None,
+            Err(_) if self.is_told => {}
+            Err(error) => {
+                self.is_told = true;
+                self.progress.suspend(|| {
+                    say(&format!(
+                        "warning: {error}; the run goes on, but could not go on from here if it were ended"
+                    ));
+                });
+            }
+        }
+    }
+
+    fn look(&mut self, error: f64, asked: f64, left_s: Option<f64>) {
+        let left =
+            left_s.filter(|_| error > asked).map_or(String::new(), |s| format!(" in about {}", duration(s)));
+        let now =
+            if error.is_finite() { format!("{} % now", percent(error)) } else { "nothing arrived".into() };
+        self.progress.phase(format!("tracing: {now}, {} %{left}", percent(asked)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_parts_are_read_as_people_write_them() {
+        for (text, s) in [
+            ("90", 90.0),
+            ("90 s", 90.0),
+            ("10min", 600.0),
+            ("1.5h", 5400.0),
+            ("2m", 120.0),
+            ("1d", 86_400.0),
+        ] {
+            assert_eq!(seconds(text).unwrap().as_secs_f64(), s, "{text}");
+        }
+        for text in ["", "0", "-1", "1 week", "nan", "1e300h", "min"] {
+            assert!(seconds(text).is_err(), "{text}");
+        }
+        assert_eq!((part("3/16").unwrap(), part(" 1 / 1 ").unwrap()), ([3, 16], [1, 1]));
+        for text in ["0/16", "17/16", "3", "3/", "-1/4", "1/100000", "a/b"] {
+            assert!(part(text).is_err(), "{text}");
+        }
+    }
+}

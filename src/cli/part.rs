@@ -1,0 +1,199 @@
+//! `caustix render --part K/N` and `caustix merge`: one run on many machines.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+
+use crate::error::words::names;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::files::folder::Folder;
+use crate::files::outputs::check_outputs;
+use crate::files::run_state::{self, Head, STATE, Saved};
+use crate::files::scene_toml;
+use crate::report::numbers::grouped;
+use crate::run::replicates::{Course, Unkept, is_together};
+use crate::run::together::{Together, Watched};
+use crate::run::{Goal, Plan, StoppedBy, choose_cells};
+use crate::scene::Scene;
+
+use super::args::{MAX_THREADS, whole};
+use super::long::{self, Asked, Job};
+use super::progress::{INTERRUPTED, Progress, catch_interrupts};
+use super::render::{files_of, load, thread_pool};
+use super::written::{Told, say_found};
+use super::{Done, RenderArgs, exit, print, results, say, warn, written};
+
+/// Arguments of `caustix merge`.
+#[derive(Debug, Args)]
+pub struct MergeArgs {
+    /// States of all parts of one run, as `caustix render --part K/N` wrote them, in any order.
+    #[arg(required = true, value_name = "STATE")]
+    pub states: Vec<PathBuf>,
+    /// Directory for the results; made if it is not there.
+    #[arg(short = 'o', long = "output", value_name = "DIR", default_value = "caustix-out")]
+    pub output: PathBuf,
+    /// The scene file, where it does not lie as the states name it.
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<PathBuf>,
+    /// Read files at or below the scene's folder alone, links followed: for scenes from strangers.
+    #[arg(long)]
+    pub confine: bool,
+    /// Threads [default: all cores]. The results do not depend on it.
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = whole::<u32, 1, { MAX_THREADS as u64 }>)]
+    pub threads: Option<u32>,
+    /// Exit with 4 where a warning says that a number is wrong (severity "untrusted").
+    #[arg(long)]
+    pub strict: bool,
+    /// No progress bar and no summary.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Traces a part of a run, and writes its state; the exit code.
+pub fn run(args: &RenderArgs, asked: &Asked<'_>, mut scene: Scene, part: [u32; 2]) -> Done {
+    let [k, of] = part;
+    let name = format!("part-{k}.state");
+    let state = args.output.join(&name);
+    asked.plan(None)?;
+    catch_interrupts();
+    let _folder =
+        Folder::take_part(&args.output, &format!(".caustix-part-{k}.lock"), "a directory for the results")?;
+    check_outputs(std::slice::from_ref(&state), &results::inputs(args.scene.as_deref(), &scene))?;
+    let saved = if args.resume { long::found(&state)? } else { None };
+    let (plan, _) = asked.plan(saved.as_ref().map(|saved| &saved.head))?;
+    asked.say_rounding(&plan);
+    check(&scene, &plan, saved.as_ref(), part)?;
+    let pool = thread_pool(args.threads)?;
+    match &saved {
+        Some(saved) => saved.head.divide(&mut scene),
+        None => pool.install(|| choose_cells(&mut scene, &plan, &INTERRUPTED))?,
+    }
+    let job = Job {
+        scene: &scene,
+        plan,
+        goal: Goal::default(),
+        state: &state,
+        part_of: Some(part),
+        quiet: args.quiet,
+    };
+    let outcome = pool.install(|| job.traced(saved.as_ref()))?;
+    if outcome.stopped_by == StoppedBy::Interrupt {
+        say(&format!(
+            "caustix: interrupted; the same command with --resume goes on from {}",
+            state.display()
+        ));
+        return Ok(exit::INTERRUPTED);
+    }
+    if Saved::open(&state).is_err() {
+        return Ok(exit::WRONG);
+    }
+    if !args.quiet {
+        let [photons, all] = [outcome.photons, plan.photons()].map(grouped);
+        print(&format!("part {k} of {of}: {photons} of {all} photons, written to {}\n", state.display()));
+        print(&format!("`caustix merge` makes the results of all {of} parts\n"));
+    }
+    Ok(exit::DONE)
+}
+
+/// That a run can be done in parts, and that a state is of this part.
+fn check(scene: &Scene, plan: &Plan, saved: Option<&Saved>, [k, of]: [u32; 2]) -> Result<()> {
+    let refuse = |found: String, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
+    let algorithm = plan.algorithm();
+    if algorithm.sampling().skips_points() || !is_together(scene, plan) {
+        let required = "a variant whose photons are numbered as its points are, of a sequence that is not made for its number, \
+                        and maps of all replicates that fit into memory";
+        return refuse(format!("a part of a run by {}", algorithm.name()), required);
+    }
+    match saved.map(|saved| saved.head.part_of) {
+        Some(part_of) if part_of != Some([k, of]) => {
+            let found = part_of.map_or("a whole run".into(), |[k, of]| format!("part {k} of {of}"));
+            refuse(format!("the state of {found}"), &format!("one of part {k} of {of}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Runs `caustix merge`; the exit code.
+pub fn merge(args: &MergeArgs) -> Done {
+    let started = Instant::now();
+    let saved = args.states.iter().map(|path| Saved::open(path)).collect::<Result<Vec<_>>>()?;
+    check_parts(&saved)?;
+    let head = &saved[0].head;
+    let path = args.scene.clone().or_else(|| (!is_built_in(&head.scene)).then(|| PathBuf::from(&head.scene)));
+    let (mut scene, _) = load(path.as_deref(), args.confine, args.quiet)?;
+    warn(&scene.warnings);
+    scene.found.iter().for_each(say_found);
+    let plan = Plan::new(&head.settings()?)?;
+    head.check(&scene, &plan).map_err(|e| e.in_file(saved[0].path()))?;
+    head.divide(&mut scene);
+    catch_interrupts();
+    let folder = results::take(&args.output)?;
+    let mut inputs = results::inputs(path.as_deref(), &scene);
+    inputs.extend(args.states.iter().cloned());
+    let state = args.output.join(STATE);
+    check_outputs(&files_of(&scene, &args.output, true).collect::<Vec<_>>(), &inputs)?;
+    let pool = thread_pool(args.threads)?;
+    let progress = Progress::new(args.quiet, "adding parts", 0);
+    let mut course = Course::new(Together::new(&scene, &plan)?);
+    for part in &saved {
+        part.add_to(&mut course.run)?;
+        course.trace_s += part.head.trace_s();
+    }
+    course.run.whole();
+    progress.clear();
+    run_state::write(&state, &Head::of(&course, None, None), &course.run)?;
+    let watched = Watched { interrupt: &INTERRUPTED, progress: &|_| {} };
+    let told = Told {
+        folder: &folder,
+        output: &args.output,
+        inputs,
+        save_map: None,
+        started,
+        quiet: args.quiet,
+        strict: args.strict,
+    };
+    pool.install(|| {
+        let outcome = course.run(Goal::default(), watched, &mut Unkept)?;
+        written::write(&told, &scene, &outcome, None)
+    })
+}
+
+fn is_built_in(name: &str) -> bool {
+    name == scene_toml::BUILT_IN
+}
+
+/// That states are all parts of one run, each once and whole.
+fn check_parts(saved: &[Saved]) -> Result<()> {
+    let (first, rest) =
+        saved.split_first().ok_or_else(|| Diagnostic::new(Kind::Missing, "no states", "at least one"))?;
+    for other in rest {
+        first.head.check_same_run(&other.head).map_err(|e| e.in_file(other.path()))?;
+    }
+    let of = first.head.part_of.map_or(1, |[_, of]| of);
+    let number = |saved: &Saved| saved.head.part_of.map_or(1, |[k, _]| k);
+    for (i, part) in saved.iter().enumerate() {
+        if let Some(twin) = saved[..i].iter().find(|twin| number(twin) == number(part)) {
+            let found = format!("part {} of {of}, which {} is, too", number(part), twin.path().display());
+            return Err(Diagnostic::new(Kind::Range, found, "each part once").in_file(part.path()));
+        }
+        if !part.head.is_done() {
+            let (k, (_, done)) = (number(part), part.head.photons());
+            let found = format!(
+                "part {k} of {of} after {} photons of each replicate: it is not finished",
+                grouped(done)
+            );
+            let hint = format!("`caustix render --part {k}/{of} --resume` finishes it");
+            return Err(Diagnostic::new(Kind::Range, found, "finished parts")
+                .hint(hint)
+                .in_file(part.path()));
+        }
+    }
+    let missing: Vec<String> =
+        (1..=of).filter(|k| !saved.iter().any(|part| number(part) == *k)).map(|k| k.to_string()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let found = format!("{} of {of} parts: missing {}", saved.len(), names(&missing, 16));
+    Err(Diagnostic::new(Kind::Missing, found, format!("all {of} parts of the run")))
+}

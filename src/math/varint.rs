@@ -1,0 +1,93 @@
+//! Whole numbers as bytes, seven bits each, the lowest first: counts of a map are small, and most take one byte (LEB128).
+
+use std::io::{self, Read, Write};
+
+/// Numbers that are put together before they are written.
+const CHUNK: usize = 1 << 13;
+/// Most bytes of a number of 64 bits.
+const MOST_BYTES: usize = 10;
+
+/// Writes numbers.
+///
+/// # Errors
+/// Those of the writer.
+pub fn put(out: &mut dyn Write, numbers: impl IntoIterator<Item = u64>) -> io::Result<()> {
+    let mut bytes = Vec::with_capacity(CHUNK + MOST_BYTES);
+    for mut number in numbers {
+        while number >= 1 << 7 {
+            bytes.push(number as u8 | 1 << 7);
+            number >>= 7;
+        }
+        bytes.push(number as u8);
+        if bytes.len() >= CHUNK {
+            out.write_all(&bytes)?;
+            bytes.clear();
+        }
+    }
+    out.write_all(&bytes)
+}
+
+/// Reads a number.
+///
+/// # Errors
+/// Those of the reader; bytes that are no number of 64 bits.
+pub fn take(from: &mut dyn Read) -> io::Result<u64> {
+    let mut number = 0;
+    for k in 0..MOST_BYTES {
+        let mut byte = [0];
+        from.read_exact(&mut byte)?;
+        let bits = u64::from(byte[0] & 0x7f);
+        let shift = 7 * k as u32;
+        if bits << shift >> shift != bits {
+            break;
+        }
+        number |= bits << shift;
+        if byte[0] >> 7 == 0 {
+            return Ok(number);
+        }
+    }
+    Err(damaged("a number of more than 64 bits"))
+}
+
+/// Reads a number that is to be this one.
+///
+/// # Errors
+/// Those of the reader; another number.
+pub fn expect(from: &mut dyn Read, number: u64, what: &str) -> io::Result<()> {
+    match take(from)? {
+        found if found == number => Ok(()),
+        found => Err(damaged(&format!("{found} {what} instead of {number}"))),
+    }
+}
+
+/// That what was read cannot be.
+pub fn damaged(found: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back_and_small_ones_take_a_byte() {
+        let numbers = [0, 1, 127, 128, 300, 1 << 35, u64::MAX - 1, u64::MAX];
+        let mut bytes = Vec::new();
+        put(&mut bytes, numbers).unwrap();
+        assert_eq!(bytes.len(), 1 + 1 + 1 + 2 + 2 + 6 + 10 + 10);
+        let mut from = &bytes[..];
+        assert_eq!(numbers.map(|_| take(&mut from).unwrap()), numbers);
+        assert!(take(&mut from).is_err());
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused() {
+        let too_long = [0xff; 11];
+        let mut too_large = [0xff; 10];
+        too_large[9] = 2;
+        for bytes in [&too_long[..], &too_large, &[0x80], &[]] {
+            assert!(take(&mut &bytes[..]).is_err(), "{bytes:?}");
+        }
+        assert!(expect(&mut &[7_u8][..], 8, "cells").unwrap_err().to_string().contains("7 cells"));
+    }
+}
