@@ -3,17 +3,20 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPool;
+
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::run_state::{self, Head, Saved};
 use crate::files::scene_toml::RunDefaults;
 use crate::report::numbers::{duration, grouped, percent};
-use crate::run::replicates::{Course, Keep};
+use crate::run::replicates::{Alone, Course, Keep, Workers};
+use crate::run::share::{Post, Shared};
 use crate::run::together::{Together, Watched};
 use crate::run::{ErrorGoal, ErrorOf, Goal, Outcome, Plan, Settings};
 use crate::scene::Scene;
 
 use super::progress::{INTERRUPTED, Progress};
-use super::{RenderArgs, algorithm, count, in_option, say};
+use super::{RenderArgs, algorithm, count, in_option, ranks, say};
 
 /// What the command line asks of a run.
 pub struct Asked<'a> {
@@ -225,10 +228,37 @@ impl Job<'_> {
     /// # Errors
     /// Those of tracing; a state of another run.
     pub fn traced(&self, saved: Option<&Saved>) -> Result<Outcome> {
-        let course = match saved {
-            Some(saved) => saved.resumed(self.scene, &self.plan)?,
-            None => Course::new(Together::of_part(self.scene, &self.plan, self.indices())?),
-        };
+        self.traced_by(&mut Alone, self.course(saved)?, saved)
+    }
+
+    /// The same by all ranks, of which this one traces on the threads of a pool.
+    ///
+    /// # Errors
+    /// Those of [`Self::traced`], and of the other ranks.
+    pub fn traced_by_all(
+        &self,
+        saved: Option<&Saved>,
+        post: &dyn Post,
+        pool: &ThreadPool,
+    ) -> Result<Outcome> {
+        let course = self.course(saved)?;
+        ranks::start(&course, self.goal.error, post)?;
+        self.traced_by(&mut Shared::new(post, pool), course, saved)
+    }
+
+    fn course(&self, saved: Option<&Saved>) -> Result<Course<'_>> {
+        match saved {
+            Some(saved) => saved.resumed(self.scene, &self.plan),
+            None => Ok(Course::new(Together::of_part(self.scene, &self.plan, self.indices())?)),
+        }
+    }
+
+    fn traced_by(
+        &self,
+        workers: &mut impl Workers,
+        course: Course<'_>,
+        saved: Option<&Saved>,
+    ) -> Result<Outcome> {
         let all = if self.goal.error.is_some() || self.goal.until.is_some() { 0 } else { self.photons() };
         let progress = Progress::new(self.quiet, "tracing", all);
         if saved.is_some() {
@@ -242,7 +272,7 @@ impl Job<'_> {
         let mut keeper = Keeper { job: self, progress: &progress, is_told: false, more };
         let photons = |photons| progress.inc(photons);
         let watched = Watched { interrupt: &INTERRUPTED, progress: &photons };
-        let outcome = course.run(self.goal, watched, &mut keeper);
+        let outcome = course.run_by(workers, self.goal, watched, &mut keeper);
         progress.clear();
         outcome
     }

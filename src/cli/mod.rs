@@ -10,8 +10,9 @@ mod results;
 mod part;
 mod picture;
 mod written;
-#[cfg(feature = "mpi")]
 mod ranks;
+#[cfg(feature = "mpi")]
+mod mpi;
 mod render;
 mod photometry;
 mod check;
@@ -33,6 +34,7 @@ use crate::files::scene_toml::count::parse_count;
 use crate::files::scene_toml::document::MOST_ERRORS;
 use crate::files::suggest;
 use crate::plot::drawing::Drawing;
+use crate::run::share::Post;
 use crate::run::{Algorithm, Variant};
 use crate::sequence::Sequence;
 
@@ -96,14 +98,27 @@ type Done = Result<u8, Vec<Diagnostic>>;
 /// Runs the command with the arguments of the process.
 pub fn main() -> ExitCode {
     #[cfg(feature = "mpi")]
-    let _ranks = match ranks::Ranks::alone() {
-        Ok(ranks) => ranks,
-        Err(exit) => return exit,
-    };
+    match mpi::Ranks::started() {
+        Ok(ranks) => run(ranks.as_ref().map(|ranks| ranks as &dyn Post).filter(|post| post.size() > 1)),
+        Err(error) => ExitCode::from(fail(None, &[error])),
+    }
+    #[cfg(not(feature = "mpi"))]
+    run(None)
+}
+
+/// Runs the command, where `post` is to the other processes that run it, too.
+fn run(post: Option<&dyn Post>) -> ExitCode {
     let parsed = Command::try_parse().and_then(|command| match command.subcommand {
         Some(subcommand) => Ok(subcommand),
         None => RenderArgs::try_parse_from(["caustix"]).map(Sub::Render),
     });
+    let post = match (post, &parsed) {
+        (None, _) => None,
+        (Some(post), Ok(Sub::Render(args))) if post.rank() > 0 => return ranks::follow(args, post),
+        (Some(post), _) if post.rank() > 0 => return ExitCode::SUCCESS,
+        (Some(post), _) => Some(ranks::Leader(post)),
+    };
+    let post = post.as_ref().map(|leader| leader.0);
     let scene = match &parsed {
         Ok(Sub::Render(RenderArgs { scene, .. }) | Sub::Check(CheckArgs { scene, .. })) => scene.clone(),
         Ok(Sub::Compare(compare::CompareArgs { scene, .. })) => scene.clone(),
@@ -123,7 +138,8 @@ pub fn main() -> ExitCode {
             }
             Ok(if error.use_stderr() { exit::USAGE } else { exit::DONE })
         }
-        Ok(Sub::Render(args)) => render::run(&args),
+        Ok(Sub::Render(args)) => render::run(&args, post),
+        Ok(_) if post.is_some() => Err(ranks::for_one().into()),
         Ok(Sub::Photometry(args)) => photometry::run(&args),
         Ok(Sub::Check(args)) => check::run(&args),
         Ok(Sub::Compare(args)) => compare::run(&args),
@@ -140,9 +156,15 @@ pub fn main() -> ExitCode {
 /// Set where stdout did not take what was printed.
 static CUT: AtomicBool = AtomicBool::new(false);
 
+/// Set where this process is one of several and another one speaks.
+static MUTE: AtomicBool = AtomicBool::new(false);
+
 /// A line to stderr; a closed stderr is no reason to fail.
 #[allow(clippy::print_stderr)]
 fn say(line: &str) {
+    if MUTE.load(Ordering::Relaxed) {
+        return;
+    }
     let _written = writeln!(io::stderr(), "{line}");
 }
 

@@ -13,6 +13,7 @@ use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture
 use crate::report::saved::SavedReport;
 use crate::report::vouched::vouching;
 use crate::run::replicates::is_together;
+use crate::run::share::Post;
 use crate::run::{Outcome, Plan, choose_cells, trace};
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
@@ -22,7 +23,7 @@ use super::long::{self, Asked};
 use super::misuse::a_folder;
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::written::{REPORT, Told, beside_earlier, endings, say_found, seen_wholly, strictly};
-use super::{Done, RenderArgs, exit, far_field, part, picture, print, results, say, warn, written};
+use super::{Done, RenderArgs, exit, far_field, part, picture, print, ranks, results, say, warn, written};
 
 /// Reads and builds a scene, from its own folder alone if it is confined to that; without a path the built-in one.
 pub(super) fn load(
@@ -54,14 +55,21 @@ fn load_in_phases(
 }
 
 /// Runs the subcommand; the exit code.
-pub(super) fn run(args: &RenderArgs) -> Done {
+pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
     let started = Instant::now();
+    #[cfg(not(feature = "mpi"))]
+    ranks::check_launched(args)?;
     let (mut scene, run) = load(args.scene.as_deref(), args.confine, args.quiet)?;
     warn(&scene.warnings);
     scene.found.iter().for_each(say_found);
     picture::check(args, &scene)?;
     let asked = Asked::new(args, run, started)?;
     asked.check_camera(&scene)?;
+    let check_shared = |scene: &Scene, plan: &Plan| match post {
+        Some(post) => ranks::check(args, scene, plan, post),
+        None => Ok(()),
+    };
+    check_shared(&scene, &asked.plan(None)?.0)?;
     if let Some(part) = asked.part {
         return part::run(args, &asked, scene, part);
     }
@@ -72,6 +80,9 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     // Told before anything is made.
     asked.plan(None)?;
     catch_interrupts();
+    if let Some(post) = post {
+        ranks::check_all_read(&scene, post)?;
+    }
     // Before tracing, not after: a directory that cannot be made should cost nobody an hour.
     let folder = results::take(&args.output)?;
     let inputs = results::inputs(args.scene.as_deref(), &scene);
@@ -80,7 +91,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     let saved = if args.resume { long::found(&state)? } else { None };
     let (plan, goal) = asked.plan(saved.as_ref().map(|saved| &saved.head))?;
     asked.say_rounding(&plan);
-    let pool = thread_pool(args.threads)?;
+    let pool = thread_pool(post.map_or(args.threads, |post| ranks::threads(args, post)))?;
     match &saved {
         Some(saved) => saved.head.divide(&mut scene),
         None => {
@@ -93,9 +104,14 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     if let Some(error) = &goal.error {
         error.check(&scene, &plan)?;
     }
+    check_shared(&scene, &plan)?;
     let (outcome, picture) = if scene.camera.is_none() && is_together(&scene, &plan) {
         let job = long::Job { scene: &scene, plan, goal, state: &state, part_of: None, quiet: args.quiet };
-        (pool.install(|| job.traced(saved.as_ref()))?, None)
+        let outcome = match post {
+            None => pool.install(|| job.traced(saved.as_ref())),
+            Some(post) => job.traced_by_all(saved.as_ref(), post, &pool),
+        };
+        (outcome?, None)
     } else {
         if args.resume {
             let why = long::why_no_state(&scene);

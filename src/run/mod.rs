@@ -17,6 +17,7 @@ pub mod in_turn;
 pub mod together;
 mod schedule;
 pub mod replicates;
+pub mod share;
 pub mod pilot;
 pub mod dark;
 pub mod warnings;

@@ -86,6 +86,32 @@ pub trait Keep {
     fn look(&mut self, error: f64, asked: f64, left_s: Option<f64>);
 }
 
+/// By whom the photons of a run are traced.
+pub trait Workers {
+    /// Traces all replicates up to this index; false where an interrupt came before, as [`Together::trace`].
+    ///
+    /// # Errors
+    /// Those of [`Together::trace`], and of whoever else traces.
+    fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool>;
+
+    /// Does a sum that takes many threads.
+    fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R;
+}
+
+/// The threads of the current rayon pool.
+#[derive(Debug)]
+pub struct Alone;
+
+impl Workers for Alone {
+    fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool> {
+        run.trace(end, watched)
+    }
+
+    fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R {
+        sum()
+    }
+}
+
 /// Nothing is kept.
 #[derive(Debug)]
 pub struct Unkept;
@@ -105,18 +131,32 @@ impl<'s> Course<'s> {
         Self { run, looks: Looks::default(), trace_s: 0.0 }
     }
 
-    /// Runs to the end.
+    /// Runs to the end, on the current rayon pool.
     ///
     /// # Errors
     /// Interrupted before there was a result; a ledger that does not balance.
-    pub fn run(mut self, goal: Goal, watched: Watched<'_>, keep: &mut impl Keep) -> Result<Outcome> {
+    pub fn run(self, goal: Goal, watched: Watched<'_>, keep: &mut impl Keep) -> Result<Outcome> {
+        self.run_by(&mut Alone, goal, watched, keep)
+    }
+
+    /// The same by others.
+    ///
+    /// # Errors
+    /// Those of [`Self::run`] and of the workers.
+    pub fn run_by(
+        mut self,
+        workers: &mut impl Workers,
+        goal: Goal,
+        watched: Watched<'_>,
+        keep: &mut impl Keep,
+    ) -> Result<Outcome> {
         let (started, earlier_s) = (Instant::now(), self.trace_s);
         let mut outcome = Outcome::new(self.run.scene(), self.run.plan());
         let replicates = u64::from(self.run.plan().replicates());
         let mut schedule = Schedule::new(&self.run, &goal);
         let (mut kept, mut keeping) = (started, Duration::ZERO);
         if self.run.photons() > 0 && self.run.done() == self.run.farthest() {
-            self.run.sum_up(&mut outcome);
+            workers.install(|| self.run.sum_up(&mut outcome));
         }
         let stopped_by = loop {
             if self.has_reached(goal.error) {
@@ -127,7 +167,7 @@ impl<'s> Course<'s> {
             }
             let Some(end) = schedule.next(&self.run) else { break StoppedBy::Time };
             let (before, block) = (self.run.photons(), Instant::now());
-            if !self.run.trace(end, watched)? {
+            if !workers.trace(&mut self.run, end, watched)? {
                 break StoppedBy::Interrupt;
             }
             schedule.measure(self.run.photons() - before, block.elapsed());
@@ -137,7 +177,7 @@ impl<'s> Course<'s> {
             // A sum over all counters for each that takes a percent of the time of the photons since the last.
             let news = (self.run.photons() - outcome.photons).saturating_mul(COUNTERS_PER_PHOTON);
             if is_over || is_look || outcome.photons == 0 || news >= self.run.counters() {
-                self.run.sum_up(&mut outcome);
+                workers.install(|| self.run.sum_up(&mut outcome));
             }
             if let Some(goal) = goal.error.filter(|_| is_look) {
                 self.look(&goal, &outcome, &schedule, keep);
@@ -154,7 +194,7 @@ impl<'s> Course<'s> {
         };
         if stopped_by != StoppedBy::Interrupt {
             if outcome.photons < self.run.photons() {
-                self.run.sum_up(&mut outcome);
+                workers.install(|| self.run.sum_up(&mut outcome));
             }
             keep.keep(&self);
         }

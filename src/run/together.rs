@@ -137,6 +137,78 @@ impl<'s> Together<'s> {
         Ok(self.replicas.iter().all(|replica| replica.traced.complete))
     }
 
+    /// The index up to which the photons of all replicates belong to one octave, and which is no farther than `end`: where a
+    /// part of them that is traced elsewhere has to be added.
+    pub(super) fn stage(&self, end: u64) -> u64 {
+        let open = self.replicas.iter().filter(|replica| replica.tracer.photons < end);
+        open.map(Replica::octave).min().map_or(end, |octave| octave.min(end))
+    }
+
+    /// The indices up to `end` that are not traced, by replicate.
+    pub(super) fn open(&self, end: u64) -> Vec<Range<u64>> {
+        self.replicas.iter().map(|replica| replica.tracer.photons..end).collect()
+    }
+
+    /// Traces some photons of a replicate, to be told of by [`Self::took`].
+    ///
+    /// # Errors
+    /// Those of [`Tracer::trace`].
+    pub(super) fn task(&self, replicate: u32, range: Range<u64>, watched: Watched<'_>) -> Result<Traced> {
+        let Replica { tracer, receivers, .. } = &self.replicas[replicate as usize];
+        let mut tracer = *tracer;
+        tracer.move_to(range.start, range.start);
+        tracer.trace(range.end, receivers, watched.interrupt, watched.progress)
+    }
+
+    /// A task of a replicate is done.
+    pub(super) fn took(&mut self, replicate: u32, traced: &Traced) {
+        self.replicas[replicate as usize].traced.merge(traced);
+    }
+
+    /// All photons up to the end of a [`Self::stage`] are traced, and what was counted elsewhere has been added.
+    pub(super) fn close(&mut self, end: u64) {
+        let part_end = self.part.end;
+        self.replicas.par_iter_mut().for_each(|replica| replica.close(end, part_end));
+    }
+
+    /// Counts nothing any more, for the next stage of a process whose photons were added elsewhere.
+    pub(super) fn clear(&mut self) {
+        let scene = self.scene;
+        self.replicas.par_iter_mut().for_each(|replica| {
+            replica.receivers.clear();
+            replica.traced = Traced::new(scene);
+        });
+    }
+
+    /// What each replicate counted, as bytes.
+    pub(super) fn counted(&self) -> io::Result<Vec<Vec<u8>>> {
+        let replicas = self.replicas.par_iter();
+        replicas
+            .map(|Replica { receivers, traced, .. }| {
+                let mut bytes = Vec::new();
+                traced.write(&mut bytes)?;
+                receivers.write(&mut bytes)?;
+                Ok(bytes)
+            })
+            .collect()
+    }
+
+    /// Adds what each replicate counted elsewhere.
+    ///
+    /// # Errors
+    /// What is of another run.
+    pub(super) fn add_counted(&mut self, counted: &[Vec<u8>]) -> io::Result<()> {
+        if counted.len() != self.replicas.len() {
+            return Err(damaged(&format!("{} replicates instead of {}", counted.len(), self.replicas.len())));
+        }
+        self.replicas.par_iter_mut().zip(counted).try_for_each(|(replica, bytes)| {
+            let mut from = &bytes[..];
+            replica.traced.add_from(&mut from)?;
+            replica.receivers.add_from(&mut from)?;
+            if from.is_empty() { Ok(()) } else { Err(damaged(&format!("{} bytes too many", from.len()))) }
+        })
+    }
+
     /// Takes what there is in the place of what an outcome held. All replicates have come equally far.
     pub(super) fn sum_up(&self, outcome: &mut Outcome) {
         outcome.replace(self.replicas.iter().map(|replica| (&replica.traced, &replica.receivers)));
@@ -214,15 +286,35 @@ impl<'s> Replica<'s> {
 
     fn trace(&mut self, end: u64, part_end: u64, Watched { interrupt, progress }: Watched<'_>) -> Result<()> {
         while self.tracer.photons < end && self.traced.complete {
-            let octave = (self.tracer.photons + 1).next_power_of_two().max(1 << self.octaves.first);
+            let octave = self.octave();
             let next = octave.min(end);
             let more = self.tracer.trace(next, &self.receivers, interrupt, progress)?;
             self.traced.merge(&more);
-            if more.complete && (next == octave || next == part_end) {
-                self.octaves.close(octave.trailing_zeros(), &self.receivers);
+            if more.complete {
+                self.close_octave(octave, next, part_end);
             }
         }
         Ok(())
+    }
+
+    /// The end of the octave in which the next photon is.
+    fn octave(&self) -> u64 {
+        (self.tracer.photons + 1).next_power_of_two().max(1 << self.octaves.first)
+    }
+
+    /// All photons up to `end`, in the octave of the next one, are traced.
+    fn close(&mut self, end: u64, part_end: u64) {
+        if self.tracer.photons < end {
+            let octave = self.octave();
+            self.tracer.move_to(end, end);
+            self.close_octave(octave, end, part_end);
+        }
+    }
+
+    fn close_octave(&mut self, octave: u64, end: u64, part_end: u64) {
+        if end == octave || end == part_end {
+            self.octaves.close(octave.trailing_zeros(), &self.receivers);
+        }
     }
 }
 
