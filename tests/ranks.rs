@@ -95,11 +95,12 @@ fn any_number_of_ranks_writes_the_bytes_of_one_process() {
     let Some(options) = options() else { return };
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.toml"), scene()).unwrap();
+    fs::write(folder.path().join("plate.toml"), absorber::SCENE).unwrap();
     for (number, line) in [
         // No power of two; the built-in scene, whose cells a pilot chooses; to an error.
         "render scene.toml --photons 500_003 --quiet",
         "render --photons 2^19 --quiet",
-        "render scene.toml --error 3 --error-of cells --quiet",
+        "render plate.toml --error 0.05 --error-of cells --quiet",
     ]
     .into_iter()
     .enumerate()

@@ -149,7 +149,7 @@ pub fn check_all_read(scene: &Scene, post: &dyn Post) -> Result<()> {
                 let found = format!("an interrupt before all {} ranks had read the scene", post.size());
                 return Err(Diagnostic::new(Kind::Interrupted, found, "time for that"));
             }
-            _ => std::thread::sleep(pause.next()),
+            _ => std::thread::sleep(pause.longer()),
         }
     }
     Ok(())
@@ -193,7 +193,7 @@ pub fn follow(args: &RenderArgs, post: &dyn Post) -> ExitCode {
         Message::failed(&error).send(post, 0);
         let mut pause = Pause::default();
         while !matches!(Message::poll(post), Ok(Some((_, Message::End)))) {
-            std::thread::sleep(pause.next());
+            std::thread::sleep(pause.longer());
         }
     }
     ExitCode::SUCCESS
@@ -208,7 +208,7 @@ fn followed(args: &RenderArgs, post: &dyn Post) -> Result<()> {
         match Message::poll(post)? {
             Some((_, Message::Start(head))) => break head,
             Some((_, Message::End)) => return Ok(()),
-            _ => std::thread::sleep(pause.next()),
+            _ => std::thread::sleep(pause.longer()),
         }
     };
     let Ok((mut scene, _)) = loaded else { return Ok(()) };

@@ -53,7 +53,7 @@ impl Pause {
     }
 
     /// The next one.
-    pub fn next(&mut self) -> Duration {
+    pub fn longer(&mut self) -> Duration {
         let now = self.0;
         self.0 = LONGEST.min(now * 2);
         now

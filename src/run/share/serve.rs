@@ -56,7 +56,7 @@ impl<'a> Shared<'a> {
         let mut pause = Pause::default();
         while missing > 0 {
             match Message::poll(self.post)? {
-                None => std::thread::sleep(pause.next()),
+                None => std::thread::sleep(pause.longer()),
                 Some((from, Message::Sums(sums))) => {
                     let add = || add(run, &sums);
                     self.pool.install(add).map_err(|e| not_of_this_run(from, &e))?;
@@ -108,7 +108,7 @@ impl<'a> Shared<'a> {
                 if desk.is_empty() && tasks.photons() == 0 && (elsewhere == 0 || failed.is_some()) {
                     break;
                 }
-                if let Some((task, traced)) = desk.finished(pause.next()) {
+                if let Some((task, traced)) = desk.finished(pause.longer()) {
                     pause.end();
                     match traced {
                         Ok(traced) => {

@@ -63,7 +63,7 @@ impl Worker<'_> {
                     self.has_asked = true;
                     Message::Ask.send(post, 0);
                 }
-                if let Some((task, traced)) = desk.finished(pause.next()) {
+                if let Some((task, traced)) = desk.finished(pause.longer()) {
                     pause.end();
                     let complete = traced.as_ref().is_ok_and(|traced| traced.complete);
                     match traced {
@@ -112,7 +112,7 @@ impl Worker<'_> {
                 Some((from, Message::Sums(sums))) => self.sums.push((from, sums)),
                 Some((_, Message::End)) => return Ok(false),
                 Some(_) => {}
-                None => std::thread::sleep(pause.next()),
+                None => std::thread::sleep(pause.longer()),
             }
         }
         let sums = if is_empty { Ok(Vec::new()) } else { self.pool.install(|| run.counted()) };
