@@ -3,6 +3,7 @@
 mod args;
 mod deadline;
 mod far_field;
+mod forecast;
 mod long;
 mod misuse;
 mod progress;

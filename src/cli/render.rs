@@ -6,14 +6,14 @@ use std::time::Instant;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::folder::LOCK;
 use crate::files::outputs::check_outputs;
-use crate::files::run_state::STATE;
+use crate::files::run_state::{self, STATE};
 use crate::files::scene_toml::{self, RunDefaults};
 use crate::files::set::Set;
-use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture, warnings as seen_wrong};
+use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, warnings as seen_wrong};
 use crate::report::saved::SavedReport;
 use crate::report::vouched::vouching;
 use crate::run::replicates::is_together;
-use crate::run::{Outcome, Plan, choose_cells, trace};
+use crate::run::{Plan, choose_cells};
 use crate::scene::Scene;
 use crate::scene::receiver::Receiver;
 
@@ -22,7 +22,7 @@ use super::long::{self, Asked};
 use super::misuse::a_folder;
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::written::{REPORT, Told, beside_earlier, endings, say_found, seen_wholly, strictly};
-use super::{Done, RenderArgs, exit, far_field, part, picture, print, results, say, warn, written};
+use super::{Done, RenderArgs, exit, far_field, part, picture, print, results, warn, written};
 
 /// Reads and builds a scene, from its own folder alone if it is confined to that; without a path the built-in one.
 pub(super) fn load(
@@ -93,16 +93,12 @@ pub(super) fn run(args: &RenderArgs) -> Done {
     if let Some(error) = &goal.error {
         error.check(&scene, &plan)?;
     }
-    let (outcome, picture) = if scene.camera.is_none() && is_together(&scene, &plan) {
-        let job = long::Job { scene: &scene, plan, goal, state: &state, part_of: None, quiet: args.quiet };
-        (pool.install(|| job.traced(saved.as_ref()))?, None)
-    } else {
-        if args.resume {
-            let why = long::why_no_state(&scene);
-            say(&format!("caustix: {why}, so it keeps no state: this one starts with its first photon"));
-        }
-        traced(args, &scene, &plan, &pool)?
-    };
+    let job = long::Job { scene: &scene, plan, goal, state: &state, part_of: None, quiet: args.quiet };
+    let is_kept = scene.camera.is_none() && is_together(&scene, &plan);
+    let (outcome, picture) = pool.install(|| match is_kept {
+        true => Ok((job.traced(saved.as_ref())?, None)),
+        false => job.in_turn(saved.as_ref(), args.save_map.is_some()),
+    })?;
     let told = Told {
         folder: &folder,
         output: &args.output,
@@ -112,7 +108,12 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         quiet: args.quiet,
         strict: args.strict,
     };
-    pool.install(|| written::write(&told, &scene, &outcome, picture.as_ref()))
+    let code = pool.install(|| written::write(&told, &scene, &outcome, picture.as_ref()))?;
+    if !is_kept && code != exit::INTERRUPTED && code != exit::WRONG {
+        // Nothing can be added to replicates in turn.
+        run_state::remove(&state);
+    }
+    Ok(code)
 }
 
 /// Every file that a run is to write.
@@ -183,27 +184,6 @@ fn of_saved<const C: usize>(args: &RenderArgs, map: &Path, scene: &Scene, plan: 
     let picture = pool.install(|| picture_of_saved(scene, plan, saved, watch));
     progress.clear();
     picture
-}
-
-fn traced(
-    args: &RenderArgs,
-    scene: &Scene,
-    plan: &Plan,
-    pool: &rayon::ThreadPool,
-) -> Result<(Outcome, Option<AnyPicture>)> {
-    let progress = Progress::new(args.quiet, "tracing", plan.photons());
-    let photons = |photons| progress.inc(photons);
-    let outcome = pool.install(|| {
-        if scene.camera.is_none() {
-            return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
-        }
-        let watch =
-            Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|share| progress.picture(share) };
-        let (outcome, picture) = trace_picture(scene, plan, args.save_map.is_some(), watch)?;
-        Ok((outcome, Some(picture)))
-    });
-    progress.clear();
-    outcome
 }
 
 /// The threads that are asked for, all cores where none are.

@@ -45,21 +45,21 @@ pub struct Outcome {
     /// Where photons began and ended.
     pub ledger: Ledger,
     /// Photons absorbed by each surface, escaped, killed, trapped.
-    accounts: Moments,
+    pub(super) accounts: Moments,
     /// Of every cell, by receiver.
-    cells: Vec<Moments>,
+    pub(super) cells: Vec<Moments>,
     /// Of each receiver's total: one entry a receiver.
-    totals: Moments,
+    pub(super) totals: Moments,
     /// What each replicate counted.
-    by_replicate: Vec<ReplicateTotals>,
+    pub(super) by_replicate: Vec<ReplicateTotals>,
     /// Of every cell of an evaluation grid, by receiver; empty where it has none.
-    grids: Vec<Moments>,
+    pub(super) grids: Vec<Moments>,
     /// Of each evaluation grid's total.
-    grid_totals: Moments,
+    pub(super) grid_totals: Moments,
     /// Of every receiver whose spot is measured: what each replicate counted.
-    spots: Vec<Vec<SpotCount>>,
+    pub(super) spots: Vec<Vec<SpotCount>>,
     /// Of every far field.
-    far_fields: Vec<Sums>,
+    pub(super) far_fields: Vec<Sums>,
     /// Arrivals on the side of each receiver on which it does not count.
     pub turned_away: Vec<u64>,
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.

@@ -2,20 +2,19 @@
 //! somebody stops it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::tally::Receivers;
 
 use super::goal::{ErrorGoal, Goal, Looks};
-use super::in_turn::trace_by;
 use super::kept::are_kept;
 use super::outcome::{Outcome, Reached, StoppedBy};
+use super::pace::Pace;
 use super::plan::Plan;
 use super::schedule::Schedule;
 use super::together::{COUNTERS_PER_PHOTON, Together, Watched};
-use super::tracer::Tracer;
+use super::turns::{self, ToReceivers, Turns};
 
 /// Traces a scene by a plan, on the current rayon pool. Setting `interrupt` ends the run early; `progress` is
 /// told numbers of photons as they are done.
@@ -32,13 +31,12 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    if !is_together(scene, plan) {
-        let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
-            tracer.trace(end, receivers, interrupt, progress)
-        };
-        return trace_by(scene, plan, stage, interrupt);
-    }
     let watched = Watched { interrupt, progress };
+    if !is_together(scene, plan) {
+        let mut turns = Turns::new(scene, plan)?;
+        turns.run(watched, &mut ToReceivers { watched, keep: &turns::Unkept })?;
+        return turns.finish();
+    }
     Course::new(Together::new(scene, plan)?).run(Goal::default(), watched, &mut Unkept)
 }
 
@@ -77,13 +75,21 @@ pub struct Course<'s> {
     pub trace_s: f64,
 }
 
-/// What is told of a run, and kept of it, between blocks.
+/// What traces a run from pause to pause, and keeps and tells what there is in between.
 pub trait Keep {
     /// Keeps what there is; a run asks for it so seldom that it costs no more than a percent of its time.
     fn keep(&mut self, course: &Course<'_>);
 
+    /// Takes a run on to this index.
+    ///
+    /// # Errors
+    /// Those of tracing.
+    fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool> {
+        run.trace(end, watched)
+    }
+
     /// Told after every look: the error, what is asked for, and how long it may take, s.
-    fn look(&mut self, error: f64, asked: f64, left_s: Option<f64>);
+    fn look(&mut self, _error: f64, _asked: f64, _left_s: Option<f64>) {}
 }
 
 /// Nothing is kept.
@@ -92,12 +98,7 @@ pub struct Unkept;
 
 impl Keep for Unkept {
     fn keep(&mut self, _: &Course<'_>) {}
-    fn look(&mut self, _: f64, _: f64, _: Option<f64>) {}
 }
-
-/// What there is is kept after a second, and then when a hundred times as long as it takes has gone by.
-const FIRST_KEPT: Duration = Duration::from_secs(1);
-const KEEPING_PART: u32 = 100;
 
 impl<'s> Course<'s> {
     /// From the first photon, or from where `run` is.
@@ -114,7 +115,7 @@ impl<'s> Course<'s> {
         let mut outcome = Outcome::new(self.run.scene(), self.run.plan());
         let replicates = u64::from(self.run.plan().replicates());
         let mut schedule = Schedule::new(&self.run, &goal);
-        let (mut kept, mut keeping) = (started, Duration::ZERO);
+        let mut pace = Pace::new();
         if self.run.photons() > 0 && self.run.done() == self.run.farthest() {
             self.run.sum_up(&mut outcome);
         }
@@ -127,7 +128,7 @@ impl<'s> Course<'s> {
             }
             let Some(end) = schedule.next(&self.run) else { break StoppedBy::Time };
             let (before, block) = (self.run.photons(), Instant::now());
-            if !self.run.trace(end, watched)? {
+            if !keep.trace(&mut self.run, end, watched)? {
                 break StoppedBy::Interrupt;
             }
             schedule.measure(self.run.photons() - before, block.elapsed());
@@ -146,10 +147,8 @@ impl<'s> Course<'s> {
                 keep.keep(&self);
                 break StoppedBy::Interrupt;
             }
-            if kept.elapsed() >= FIRST_KEPT.max(keeping * KEEPING_PART) && !self.run.is_done() {
-                let begun = Instant::now();
-                keep.keep(&self);
-                (kept, keeping) = (Instant::now(), begun.elapsed());
+            if pace.is_due() && !self.run.is_done() {
+                pace.keep(|| keep.keep(&self));
             }
         };
         if stopped_by != StoppedBy::Interrupt {
