@@ -24,7 +24,7 @@ use super::deadline::{flagged, or_end};
 use super::forecast::{ForecastCheck, foretold};
 use super::progress::Progress;
 use super::written::{say_found, strictly};
-use super::{CheckArgs, Done, exit, fail, print, render, say, warn};
+use super::{CheckArgs, Done, exit, fail, print, say, start, warn};
 
 #[derive(Debug, Default, Serialize)]
 struct Check {
@@ -311,7 +311,7 @@ fn told_late(is_json: bool) {
 pub fn run(args: &CheckArgs) -> Done {
     let is_json = args.json;
     let _until_done = or_end(LONGEST, exit::WRONG, move || told_late(is_json));
-    let ready = render::load(args.scene.as_deref(), args.confine, args.json).and_then(|(scene, _)| {
+    let ready = start::load(args.scene.as_deref(), args.confine, args.json).and_then(|(scene, _)| {
         // What `render` refuses is not ready.
         picture::check(&scene)?;
         Ok(scene)

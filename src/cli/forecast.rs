@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::{Kind, Result};
 use crate::report::numbers::{duration, percent};
-use crate::run::forecast::{Forecast, forecast};
+use crate::run::forecast::{Forecast, PILOT, forecast};
 use crate::run::{ErrorGoal, ErrorOf, Plan, Settings, choose_cells};
 use crate::scene::Scene;
 
@@ -66,7 +66,8 @@ impl ForecastCheck {
         let Self { error_of, error, photons, seconds } = self;
         // Of an expectation no more than a power of two is known.
         let about = match photons.checked_next_power_of_two() {
-            Some(power) if *photons > 1 => format!("2^{} photons", power.trailing_zeros()),
+            Some(_) if *photons <= PILOT => format!("fewer than 2^{} photons", PILOT.trailing_zeros()),
+            Some(power) => format!("2^{} photons", power.trailing_zeros()),
             _ => "more photons than a run has".into(),
         };
         let error = percent(*error);

@@ -12,6 +12,7 @@ mod part;
 mod picture;
 mod written;
 mod render;
+mod start;
 mod photometry;
 mod check;
 mod compare;

@@ -14,7 +14,8 @@ use crate::files::scene_toml;
 use crate::picture::part::AnyPhotons;
 use crate::picture::{AnyPicture, Watch};
 use crate::report::numbers::grouped;
-use crate::run::replicates::{Course, Unkept, is_together};
+use crate::run::kept::is_together;
+use crate::run::replicates::{Course, Unkept};
 use crate::run::together::{Together, Watched};
 use crate::run::{Goal, Plan, StoppedBy, choose_cells};
 use crate::scene::Scene;
@@ -22,7 +23,7 @@ use crate::scene::Scene;
 use super::args::{MAX_THREADS, whole};
 use super::long::{self, Asked, Job};
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::render::{files_of, load, thread_pool};
+use super::start::{files_of, load, thread_pool};
 use super::written::{Told, say_found};
 use super::{Done, RenderArgs, exit, print, results, say, warn, written};
 

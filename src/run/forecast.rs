@@ -6,11 +6,12 @@ use crate::error::Result;
 use crate::scene::Scene;
 
 use super::goal::{ErrorGoal, Goal, Looks};
+use super::kept::is_together;
 use super::plan::{Plan, Settings};
-use super::replicates::{is_together, trace_until};
+use super::replicates::trace_until;
 
 /// Photons of the pilot; a half of them is looked at, too, for the rate at which the error falls.
-const PILOT: u64 = 1 << 16;
+pub const PILOT: u64 = 1 << 16;
 
 /// What an error is expected to take.
 #[derive(Debug, Clone, Copy)]

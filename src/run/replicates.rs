@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::scene::Scene;
 
 use super::goal::{ErrorGoal, Goal, Looks};
-use super::kept::are_kept;
+use super::kept::is_together;
 use super::outcome::{Outcome, Reached, StoppedBy};
 use super::pace::Pace;
 use super::plan::Plan;
@@ -56,12 +56,6 @@ pub fn trace_until(
     }
     let watched = Watched { interrupt, progress };
     Course::new(Together::new(scene, plan)?).run(goal, watched, &mut Unkept)
-}
-
-/// Whether the replicates of a run advance together: unless their maps take more than a gibibyte, or the points are
-/// made for their number, so that a first part of them is no sample.
-pub fn is_together(scene: &Scene, plan: &Plan) -> bool {
-    are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
 }
 
 /// A run on its way.
