@@ -233,8 +233,7 @@ impl Job<'_> {
         };
         let all = if self.goal.error.is_some() || self.goal.until.is_some() { 0 } else { self.photons() };
         let progress = self.progress(saved, all);
-        let mut keeper =
-            Keeper { job: self, state: State::new(self.state, saved), progress: &progress, kept };
+        let mut keeper = Keeper { job: self, state: State::new(self, saved), progress: &progress, kept };
         let photons = |photons| progress.inc(photons);
         let watched = Watched { interrupt: &INTERRUPTED, progress: &photons };
         let outcome = course.run(self.goal, watched, &mut keeper);
@@ -264,7 +263,7 @@ impl Job<'_> {
         let mut body = saved.map(|saved| self.opened(saved, &mut turns)).transpose()?;
         let progress = self.progress(saved, self.photons());
         let keeper =
-            TurnsKeeper { state: State::new(self.state, saved), progress: &progress, pace: Mutex::default() };
+            TurnsKeeper { state: State::new(self, saved), progress: &progress, pace: Mutex::default() };
         let photons = |photons| progress.inc(photons);
         let traced = if self.scene.camera.is_none() {
             let watched = Watched { interrupt: &INTERRUPTED, progress: &photons };
@@ -301,7 +300,7 @@ impl Job<'_> {
         if let Some(saved) = saved {
             let (there, path) = (grouped(saved.head.traced()), saved.path().display());
             progress.suspend(|| say(&format!("caustix: goes on after {there} photons from {path}")));
-            progress.inc(saved.head.traced());
+            progress.after(saved.head.traced());
         }
         progress
     }
@@ -318,9 +317,11 @@ struct State<'a> {
 
 impl<'a> State<'a> {
     /// Of a run that goes on from a state, or starts anew beside one.
-    fn new(path: &'a Path, saved: Option<&Saved>) -> Self {
+    fn new(job: &Job<'a>, saved: Option<&Saved>) -> Self {
+        let path = job.state;
         let earlier = if saved.is_none() { run_state::newest(path).ok().flatten() } else { None };
-        let more = earlier.map_or(0, |(saved, _)| saved.head.traced());
+        let same = earlier.filter(|(saved, _)| saved.head.check_photons(job.scene, &job.plan).is_ok());
+        let more = same.map_or(0, |(saved, _)| saved.head.traced());
         Self { path, is_told: AtomicBool::new(false), more: more.into() }
     }
 

@@ -216,11 +216,11 @@ impl Head {
         }
     }
 
-    /// That it is of a scene and a plan: of the same photons, of which there may be more now, in more replicates.
+    /// That it is of the photons of a scene and a plan, however many.
     ///
     /// # Errors
     /// What differs, by name.
-    pub fn check(&self, scene: &Scene, plan: &Plan) -> Result<()> {
+    pub fn check_photons(&self, scene: &Scene, plan: &Plan) -> Result<()> {
         let version = env!("CARGO_PKG_VERSION");
         let is_scene = self.scene_sha256 == scene.identity.results;
         let is_divided = self.cells.len() == scene.receivers.len();
@@ -242,6 +242,16 @@ impl Head {
             let found = format!("the state of a run by {}, seed {}", cut(&self.algorithm), self.seed);
             return differs(found, format!("one by {name}, seed {}", plan.seed()));
         }
+        Ok(())
+    }
+
+    /// That it is of a scene and a plan: of the same photons, of which there may be more now, in more replicates.
+    ///
+    /// # Errors
+    /// What differs, by name.
+    pub fn check(&self, scene: &Scene, plan: &Plan) -> Result<()> {
+        self.check_photons(scene, plan)?;
+        let differs = |found: String, required: String| Err(Diagnostic::new(Kind::Range, found, required));
         let number = |n: u64, replicates: u32| format!("{replicates} replicates of {} photons", grouped(n));
         let required = number(plan.photons_per_replicate(), plan.replicates());
         if Way::of(scene, plan, self.part_of.is_some()) != self.way
