@@ -74,7 +74,7 @@ fn results(s: &Stranger, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let is_result = |name: &str| !name.contains("state") && !name.starts_with('.') && name != "report.json";
     let file = |path: std::path::PathBuf| {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
-        is_result(&name).then(|| (name, fs::read(path).unwrap()))
+        (path.is_file() && is_result(&name)).then(|| (name, fs::read(path).unwrap()))
     };
     let mut all: BTreeMap<_, _> = entries.filter_map(file).collect();
     let mut report = s.report(folder);
