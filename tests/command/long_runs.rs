@@ -178,7 +178,7 @@ fn parts_of_a_picture_are_the_picture() {
         &["method \"splat\"", "in one piece"],
     );
     let told = ["photons for the camera", "photon_memory_mb"];
-    s.is_told("render few.toml --quiet --photons 2^18 -o p --part 1/2", 1, &told);
+    s.is_told("render few.toml --quiet --photons 2^21 -o p --part 1/2", 1, &told);
 }
 
 #[test]
