@@ -147,7 +147,7 @@ impl DiagnosisReport {
             }
             if let Some(ratio) = self.independent_variance_ratio {
                 let ratio = rounded(ratio, 3);
-                writeln!(out, "  variance     {ratio} times smaller than that of independent photons")?;
+                writeln!(out, "  variance     independent photons would have {ratio} times as much")?;
             }
             for of in self.trend.iter().flatten() {
                 let error = of.relative_standard_error.map_or("-".into(), percent);

@@ -17,8 +17,7 @@ pub struct Moment {
 /// Fewest numbers whose skewness is judged (D'Agostino 1970), and whose kurtosis is (Anscombe and Glynn 1983).
 const FEWEST: [u32; 2] = [8, 20];
 
-/// Means of squares, cubes and fourth powers of the distances from the mean, in units of which there are `numbers.len()` in one;
-/// `None` where all are equal.
+/// Means of the second, third and fourth powers of n times the deviations from the mean; `None` where all numbers are equal.
 fn central(numbers: &[u64]) -> Option<[f64; 3]> {
     let (n, sum) = (numbers.len() as i128, numbers.iter().map(|c| i128::from(*c)).sum::<i128>());
     let mut sums = [0.0; 3];
