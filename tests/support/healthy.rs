@@ -52,14 +52,14 @@ pub fn plate(side: f64) -> Scene {
 pub fn plates() -> Scene {
     let plate = |(i, [x, y]): (usize, [f64; 2])| {
         format!(
-            "[[surface]]\nname = \"plate {i}\"\ntype = \"rectangle\"\nmaterial = \"black\"\ncorner = [{x}, {y}, 0]\nedge_u = [1.1, 0, 0]\n\
-             edge_v = [0, 0.7, 0]\n[[receiver]]\nname = \"plate{i}\"\nsurface = \"plate {i}\"\ncells = [1, 1]\n"
+            "[[surface]]\nname = \"plate {i}\"\ntype = \"rectangle\"\nmaterial = \"black\"\ncorner = [{x}, {y}, 0]\nedge_u = [1.3, 0, 0]\n\
+             edge_v = [0, 1, 0]\n[[receiver]]\nname = \"plate{i}\"\nsurface = \"plate {i}\"\ncells = [1, 1]\n"
         )
     };
-    let corners = [[-1.3, -1.0], [0.2, -1.0], [-1.3, 0.2], [0.2, 0.2]];
+    let corners = [[-1.4, -1.2], [0.1, -1.2], [-1.4, 0.1], [0.1, 0.1]];
     let plates: String = corners.into_iter().enumerate().map(plate).collect();
     scene(&format!(
-        "{BLACK}[[emitter]]\ntype = \"isotropic\"\nposition = [0.03, -0.11, 1]\nflux_lm = 1000\n{plates}"
+        "{BLACK}[[emitter]]\ntype = \"isotropic\"\nposition = [0.03, -0.11, 0.4]\nflux_lm = 1000\n{plates}"
     ))
 }
 
