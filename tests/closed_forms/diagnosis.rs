@@ -14,7 +14,7 @@ const SEEDS: u64 = 2000;
 #[test]
 fn one_healthy_run_in_100_is_doubted_at_most() {
     for (sequence, seeds) in [(Sequence::Independent, 5000), (Sequence::SobolOwen, 15_000)] {
-        let runs = of_seeds(&plates(), sequence, (1 << 9, 8), seeds..seeds + SEEDS);
+        let runs = of_seeds(&plates(), sequence, (1 << 10, 8), seeds..seeds + SEEDS);
         assert!(runs.iter().flatten().all(|of| of.verdict != "unknown"));
         assert!(runs.iter().all(|of| of.iter().any(|receiver| receiver.rate.is_some())));
         let doubted = doubted(&runs) as u64;
