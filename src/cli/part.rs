@@ -48,6 +48,9 @@ pub struct MergeArgs {
     /// Exit with 4 where a warning says that a number is wrong (severity "untrusted").
     #[arg(long)]
     pub strict: bool,
+    /// Print what replicates and doublings say of each receiver.
+    #[arg(long)]
+    pub diagnose: bool,
     /// No progress bar and no summary.
     #[arg(long)]
     pub quiet: bool,
@@ -157,6 +160,7 @@ pub fn merge(args: &MergeArgs) -> Done {
         inputs,
         save_map: None,
         started,
+        diagnose: args.diagnose,
         quiet: args.quiet,
         strict: args.strict,
     };

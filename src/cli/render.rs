@@ -72,6 +72,7 @@ pub(super) fn run(args: &RenderArgs) -> Done {
         inputs,
         save_map: args.save_map.as_deref(),
         started,
+        diagnose: args.diagnose,
         quiet: args.quiet,
         strict: args.strict,
     };

@@ -29,6 +29,8 @@ const KEYS_LEFT_OUT: [&str; 11] = [
     "sha256",
     "threads",
     "time",
+    // Of a forecast: how fast this machine is.
+    "seconds",
     "time_s",
 ];
 

@@ -103,8 +103,12 @@ mod tests {
         ] {
             assert_ne!(form(&other), form(SCENE), "{other}");
         }
-        let other_content = canonical(SCENE, &|_| Some("OTHER".to_owned()));
+        let other_content = canonical(SCENE, "camera", &|_| Some("OTHER".to_owned()));
         assert_ne!(other_content, form(SCENE));
-        assert_eq!(canonical("[camera\nx", &|_| None), "[camera\nx", "what is no TOML is not touched");
+        assert_eq!(
+            canonical("[camera\nx", "camera", &|_| None),
+            "[camera\nx",
+            "what is no TOML is not touched"
+        );
     }
 }
