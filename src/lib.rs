@@ -126,6 +126,7 @@ pub use run::{
 };
 pub use sequence::Sequence;
 // Results:
+pub use estimate::diagnosis::{Drift, Moment, Rate};
 pub use estimate::extremes::Interval;
 pub use estimate::spot::{Diameter, Encircled, Figure};
 pub use run::{Estimate, Outcome};
@@ -135,6 +136,7 @@ pub use transport::{Census, Ledger};
 pub use plot::maps::write_png as write_map_png;
 #[cfg(feature = "plots")]
 pub use plot::picture::{write_luminance_png, write_png as write_picture_png};
+pub use report::diagnosis::{DiagnosisReport, DoublingReport};
 pub use report::far_field::{
     FarFieldStatistics, Measured, export as export_far_field, write_csv as write_far_field_csv,
     write_exr as write_far_field_exr,

@@ -67,6 +67,10 @@ pub struct RenderArgs {
     /// Exit with 4 where a warning says that a number is wrong (severity "untrusted").
     #[arg(long)]
     pub strict: bool,
+    /// Print what replicates and doublings say of each receiver: how the error falls, whether the estimate drifts, how replicates
+    /// scatter, and a verdict.
+    #[arg(long, conflicts_with_all = ["map", "part"])]
+    pub diagnose: bool,
     /// No progress bar and no summary.
     #[arg(long)]
     pub quiet: bool,

@@ -21,9 +21,10 @@ use crate::scene::receiver::DividedBy;
 use crate::scene::{Scene, requires::requirements};
 
 use super::deadline::{flagged, or_end};
+use super::forecast::{ForecastCheck, foretold};
 use super::progress::Progress;
 use super::written::{say_found, strictly};
-use super::{CheckArgs, Done, exit, fail, print, render, say, warn};
+use super::{CheckArgs, Done, exit, fail, print, say, start, warn};
 
 #[derive(Debug, Default, Serialize)]
 struct Check {
@@ -41,6 +42,9 @@ struct Check {
     errors: Vec<ErrorCheck>,
     #[serde(skip_serializing_if = "Option::is_none")]
     probe: Option<Probe>,
+    /// What errors will take.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    forecast: Vec<ForecastCheck>,
 }
 
 /// What a run of few photons says: absent where it says nothing.
@@ -101,6 +105,11 @@ fn probe(scene: &Scene) -> Result<Probed> {
     }
     said.sort_by_key(|warning| Reverse(warning.severity));
     Ok(Probed { photons, million_s, said })
+}
+
+/// What errors will take, where a probe told that photons are quick.
+fn forecasts(scene: &mut Scene, probed: &Probed) -> Result<Vec<ForecastCheck>> {
+    if probed.million_s > 0.0 || probed.photons < PHOTONS { Ok(Vec::new()) } else { foretold(scene) }
 }
 
 /// That the photons, or eye paths, of a scene take too long to be probed.
@@ -233,6 +242,7 @@ impl Check {
             warnings: scene.warnings.iter().map(ToString::to_string).collect(),
             errors: Vec::new(),
             probe: (!said.is_empty()).then(|| Probe { photons: *photons, warnings: said.clone() }),
+            forecast: Vec::new(),
         }
     }
 
@@ -301,23 +311,27 @@ fn told_late(is_json: bool) {
 pub fn run(args: &CheckArgs) -> Done {
     let is_json = args.json;
     let _until_done = or_end(LONGEST, exit::WRONG, move || told_late(is_json));
-    let ready = render::load(args.scene.as_deref(), args.confine, args.json).and_then(|(scene, _)| {
+    let ready = start::load(args.scene.as_deref(), args.confine, args.json).and_then(|(scene, _)| {
         // What `render` refuses is not ready.
         picture::check(&scene)?;
         Ok(scene)
     });
     let progress = Progress::new(args.json, "probing", 0);
-    let ready = ready.and_then(|scene| Ok((probe(&scene)?, scene)));
+    let mut ready = ready.and_then(|scene| Ok((probe(&scene)?, scene)));
     progress.clear();
     if args.json {
-        let check = ready
-            .as_ref()
-            .map_or_else(|errors| Check::of_errors(errors), |(probed, scene)| Check::of_scene(scene, probed));
+        let check = match &mut ready {
+            Err(errors) => Check::of_errors(errors),
+            Ok((probed, scene)) => {
+                let check = Check::of_scene(scene, probed);
+                Check { forecast: forecasts(scene, probed)?, ..check }
+            }
+        };
         print(&json(&check)?);
         let said = ready.iter().flat_map(|(probed, _)| &probed.said);
         return Ok(if check.ok { strictly(args.strict, exit::DONE, said) } else { exit::WRONG });
     }
-    let (probed, scene) = ready?;
+    let (probed, mut scene) = ready?;
     warn(&scene.warnings);
     let Probed { photons, million_s, said } = &probed;
     let photons = grouped(*photons);
@@ -339,5 +353,7 @@ pub fn run(args: &CheckArgs) -> Done {
     if *million_s > 0.0 {
         print(&format!("time       about {} for a million photons\n", duration(*million_s)));
     }
-    Ok(strictly(args.strict, exit::DONE, said))
+    let forecasts = forecasts(&mut scene, &probed)?;
+    forecasts.iter().for_each(|forecast| print(&forecast.text()));
+    Ok(strictly(args.strict, exit::DONE, &probed.said))
 }

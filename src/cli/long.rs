@@ -1,6 +1,10 @@
 //! Runs that take long: what ends them, what is kept of them, and how they go on.
 
+use std::fs::File;
+use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::ThreadPool;
@@ -8,10 +12,14 @@ use rayon::ThreadPool;
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::run_state::{self, Head, Saved};
 use crate::files::scene_toml::RunDefaults;
+use crate::picture::part::AnyPhotons;
+use crate::picture::{AnyPicture, Watch, not_of_this, trace_picture_from};
 use crate::report::numbers::{duration, grouped, percent};
-use crate::run::replicates::{Alone, Course, Keep, Workers};
+use crate::run::pace::Pace;
+use crate::run::replicates::{Course, Keep};
 use crate::run::share::{Post, Shared};
 use crate::run::together::{Together, Watched};
+use crate::run::turns::{KeepTurns, ToReceivers, Turns};
 use crate::run::{ErrorGoal, ErrorOf, Goal, Outcome, Plan, Settings};
 use crate::scene::Scene;
 
@@ -63,7 +71,6 @@ impl<'a> Asked<'a> {
         let option = match self {
             Self { error: Some(_), .. } => "--error",
             Self { until: Some(_), .. } => "--time",
-            Self { part: Some(_), .. } => "--part",
             _ => return Ok(()),
         };
         if scene.camera.is_none() {
@@ -203,14 +210,6 @@ pub fn found(path: &Path) -> Result<Option<Saved>> {
     Ok(Some(saved))
 }
 
-/// Why a run keeps no state.
-pub fn why_no_state(scene: &Scene) -> &'static str {
-    match scene.camera {
-        Some(_) => "a picture is made of photons that are not kept",
-        None => "replicates that are traced one after another are not kept",
-    }
-}
-
 /// A run whose state is kept.
 pub struct Job<'a> {
     pub scene: &'a Scene,
@@ -228,7 +227,7 @@ impl Job<'_> {
     /// # Errors
     /// Those of tracing; a state of another run.
     pub fn traced(&self, saved: Option<&Saved>) -> Result<Outcome> {
-        self.traced_by(&mut Alone, self.course(saved)?, saved)
+        self.traced_by(saved, None)
     }
 
     /// The same by all ranks, of which this one traces on the threads of a pool.
@@ -241,38 +240,31 @@ impl Job<'_> {
         post: &dyn Post,
         pool: &ThreadPool,
     ) -> Result<Outcome> {
-        let course = self.course(saved)?;
-        ranks::start(&course, self.goal.error, post)?;
-        self.traced_by(&mut Shared::new(post, pool), course, saved)
+        self.traced_by(saved, Some((post, pool)))
     }
 
-    fn course(&self, saved: Option<&Saved>) -> Result<Course<'_>> {
-        match saved {
-            Some(saved) => saved.resumed(self.scene, &self.plan),
-            None => Ok(Course::new(Together::of_part(self.scene, &self.plan, self.indices())?)),
-        }
-    }
-
-    fn traced_by(
-        &self,
-        workers: &mut impl Workers,
-        course: Course<'_>,
-        saved: Option<&Saved>,
-    ) -> Result<Outcome> {
+    fn traced_by(&self, saved: Option<&Saved>, all: Option<(&dyn Post, &ThreadPool)>) -> Result<Outcome> {
+        // A part of a picture keeps its photons: the camera sees those of all parts.
+        let is_seen = self.part_of.is_some() && self.scene.camera.is_some();
+        let mut kept = is_seen.then(|| AnyPhotons::new(self.scene)).transpose()?;
+        let course = match saved {
+            Some(saved) => saved.resumed(self.scene, &self.plan, kept.as_mut())?,
+            None => Course::new(Together::of_part(self.scene, &self.plan, self.indices())?),
+        };
+        let shared = match all {
+            None => None,
+            Some((post, pool)) => {
+                ranks::start(&course, self.goal.error, post)?;
+                Some(Shared::new(post, pool))
+            }
+        };
         let all = if self.goal.error.is_some() || self.goal.until.is_some() { 0 } else { self.photons() };
-        let progress = Progress::new(self.quiet, "tracing", all);
-        if saved.is_some() {
-            let there = grouped(course.run.photons());
-            progress.suspend(|| {
-                say(&format!("caustix: goes on after {there} photons from {}", self.state.display()))
-            });
-        }
-        progress.inc(course.run.photons());
-        let more = if saved.is_none() { self.more_photons() } else { None };
-        let mut keeper = Keeper { job: self, progress: &progress, is_told: false, more };
+        let progress = self.progress(saved, all);
+        let state = State::new(self, saved);
+        let mut keeper = Keeper { job: self, state, progress: &progress, kept, shared };
         let photons = |photons| progress.inc(photons);
         let watched = Watched { interrupt: &INTERRUPTED, progress: &photons };
-        let outcome = course.run_by(workers, self.goal, watched, &mut keeper);
+        let outcome = course.run(self.goal, watched, &mut keeper);
         progress.clear();
         outcome
     }
@@ -290,49 +282,155 @@ impl Job<'_> {
         (indices.end - indices.start) * u64::from(self.plan.replicates())
     }
 
-    /// Photons of a state that lies there, where it has more than a run that starts anew: it stays until this one has as many.
-    fn more_photons(&self) -> Option<u64> {
-        let (saved, _) = run_state::newest(self.state).ok()??;
-        Some(saved.head.photons().1 * u64::from(saved.head.replicates))
+    /// Traces it with its picture, from a state if there is one; what there is of it is kept until it has ended.
+    ///
+    /// # Errors
+    /// Those of tracing and of the picture; a state of another run.
+    pub fn in_turn(&self, saved: Option<&Saved>, save_map: bool) -> Result<(Outcome, Option<AnyPicture>)> {
+        let mut turns = Turns::new(self.scene, &self.plan)?;
+        let mut body = saved.map(|saved| self.opened(saved, &mut turns)).transpose()?;
+        let progress = self.progress(saved, self.photons());
+        let keeper =
+            TurnsKeeper { state: State::new(self, saved), progress: &progress, pace: Mutex::default() };
+        let photons = |photons| progress.inc(photons);
+        let traced = if self.scene.camera.is_none() {
+            let watched = Watched { interrupt: &INTERRUPTED, progress: &photons };
+            let read = body.as_mut().map_or(Ok(()), |from| turns.read(from)).map_err(|e| not_of_this(&e));
+            read.and_then(|()| turns.run(watched, &mut ToReceivers { watched, keep: &keeper }))
+                .and_then(|()| Ok((turns.finish()?, None)))
+        } else {
+            let camera = |share| progress.picture(share);
+            let watch = Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &camera };
+            let from = body.as_mut().map(|from| from as &mut dyn Read);
+            trace_picture_from(turns, from, save_map, watch, &keeper)
+                .map(|(outcome, picture)| (outcome, Some(picture)))
+        };
+        progress.clear();
+        traced.map_err(|e| match saved {
+            Some(saved) if e.file().is_none() && e.kind() == Kind::Syntax => e.in_file(saved.path()),
+            _ => e,
+        })
+    }
+
+    /// What a state of replicates in turn holds, for a run that is to go on from it.
+    fn opened(&self, saved: &Saved, turns: &mut Turns<'_>) -> Result<io::Take<BufReader<File>>> {
+        saved.head.check(self.scene, &self.plan).map_err(|e| e.in_file(saved.path()))?;
+        turns.after(saved.head.trace_s());
+        saved.body().map_err(|e| {
+            let found = format!("\"{e}\" while reading");
+            Diagnostic::new(Kind::Io, found, "a file that can be read").in_file(saved.path())
+        })
+    }
+
+    /// The line of progress over so many photons; from where a run goes on is said.
+    fn progress(&self, saved: Option<&Saved>, all: u64) -> Progress {
+        let progress = Progress::new(self.quiet, "tracing", all);
+        if let Some(saved) = saved {
+            let (there, path) = (grouped(saved.head.traced()), saved.path().display());
+            progress.suspend(|| say(&format!("caustix: goes on after {there} photons from {path}")));
+            progress.after(saved.head.traced());
+        }
+        progress
     }
 }
 
-/// Keeps the state of a run.
-struct Keeper<'a> {
-    job: &'a Job<'a>,
-    progress: &'a Progress,
-    /// Whether it was told that the state cannot be written.
-    is_told: bool,
-    /// A state of so many photons is there, and is not replaced by one of fewer.
-    more: Option<u64>,
+/// The file of a state that is written again and again.
+struct State<'a> {
+    path: &'a Path,
+    /// Whether it was told that it cannot be written.
+    is_told: AtomicBool,
+    /// A state of so many photons is there, and is not replaced by one of fewer that is not finished.
+    more: AtomicU64,
 }
 
-impl Keep for Keeper<'_> {
-    fn keep(&mut self, course: &Course<'_>) {
-        if !course.run.is_done() && self.more.is_some_and(|photons| course.run.photons() < photons) {
+impl<'a> State<'a> {
+    /// Of a run that goes on from a state, or starts anew beside one.
+    fn new(job: &Job<'a>, saved: Option<&Saved>) -> Self {
+        let path = job.state;
+        let earlier = if saved.is_none() { run_state::newest(path).ok().flatten() } else { None };
+        let same = earlier.filter(|(saved, _)| saved.head.check_photons(job.scene, &job.plan).is_ok());
+        let more = same.map_or(0, |(saved, _)| saved.head.traced());
+        Self { path, is_told: AtomicBool::new(false), more: more.into() }
+    }
+
+    fn write(&self, head: &Head, progress: &Progress, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) {
+        if !head.is_done() && head.traced() < self.more.load(Ordering::Relaxed) {
             return;
         }
-        let head = Head::of(course, self.job.goal.error, self.job.part_of);
-        match run_state::write(self.job.state, &head, &course.run) {
-            Ok(()) => self.more = None,
-            Err(_) if self.is_told => {}
+        match run_state::write(self.path, head, body) {
+            Ok(()) => self.more.store(0, Ordering::Relaxed),
             Err(error) => {
-                self.is_told = true;
-                self.progress.suspend(|| {
-                    say(&format!(
-                        "warning: {error}; the run goes on, but could not go on from here if it were ended"
-                    ));
-                });
+                let rest =
+                    "the run goes on, but if it were ended now it could go on from an older state at best";
+                if !self.is_told.swap(true, Ordering::Relaxed) {
+                    progress.suspend(|| say(&format!("warning: {error}; {rest}")));
+                }
             }
         }
     }
+}
+
+/// Keeps the state of replicates together.
+struct Keeper<'a> {
+    job: &'a Job<'a>,
+    state: State<'a>,
+    progress: &'a Progress,
+    /// Photons for a camera.
+    kept: Option<AnyPhotons>,
+    /// All ranks, where there are several.
+    shared: Option<Shared<'a>>,
+}
+
+impl Keep for Keeper<'_> {
+    fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool> {
+        match (&mut self.shared, &mut self.kept) {
+            (Some(shared), _) => shared.trace(run, end, watched),
+            (None, Some(kept)) => kept.trace(run, end, watched),
+            (None, None) => run.trace(end, watched),
+        }
+    }
+
+    fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R {
+        match &self.shared {
+            Some(shared) => shared.install(sum),
+            None => sum(),
+        }
+    }
+
+    fn keep(&mut self, course: &Course<'_>) {
+        let head = Head::of(course, self.job.goal.error, self.job.part_of);
+        self.state.write(&head, self.progress, |out| {
+            course.run.write(out)?;
+            self.kept.as_ref().map_or(Ok(()), |kept| kept.write(out))
+        });
+    }
 
     fn look(&mut self, error: f64, asked: f64, left_s: Option<f64>) {
-        let left =
-            left_s.filter(|_| error > asked).map_or(String::new(), |s| format!(" in about {}", duration(s)));
+        let left = left_s.filter(|_| error > asked);
+        let left = left.map_or(String::new(), |s| format!(" in about {}", duration(s)));
         let now =
             if error.is_finite() { format!("{} % now", percent(error)) } else { "nothing arrived".into() };
         self.progress.phase(format!("tracing: {now}, {} %{left}", percent(asked)));
+    }
+}
+
+/// Keeps the state of replicates in turn.
+struct TurnsKeeper<'a> {
+    state: State<'a>,
+    progress: &'a Progress,
+    pace: Mutex<Pace>,
+}
+
+impl KeepTurns for TurnsKeeper<'_> {
+    fn is_due(&self) -> bool {
+        self.pace.lock().unwrap_or_else(PoisonError::into_inner).is_due()
+    }
+
+    fn keep(&self, turns: &Turns<'_>, more: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) {
+        let head = Head::of_turns(turns);
+        let write = |out: &mut dyn Write| turns.write(out).and_then(|()| more(out));
+        let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        pace.keep(|| self.state.write(&head, self.progress, write));
     }
 }
 

@@ -3,6 +3,7 @@
 mod args;
 mod deadline;
 mod far_field;
+mod forecast;
 mod long;
 mod misuse;
 mod progress;
@@ -14,6 +15,7 @@ mod ranks;
 #[cfg(feature = "mpi")]
 mod mpi;
 mod render;
+mod start;
 mod photometry;
 mod check;
 mod compare;

@@ -11,8 +11,11 @@ use crate::files::folder::Folder;
 use crate::files::outputs::check_outputs;
 use crate::files::run_state::{self, Head, STATE, Saved};
 use crate::files::scene_toml;
+use crate::picture::part::AnyPhotons;
+use crate::picture::{AnyPicture, Watch};
 use crate::report::numbers::grouped;
-use crate::run::replicates::{Course, Unkept, is_together};
+use crate::run::kept::is_together;
+use crate::run::replicates::{Course, Unkept};
 use crate::run::together::{Together, Watched};
 use crate::run::{Goal, Plan, StoppedBy, choose_cells};
 use crate::scene::Scene;
@@ -20,7 +23,7 @@ use crate::scene::Scene;
 use super::args::{MAX_THREADS, whole};
 use super::long::{self, Asked, Job};
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::render::{files_of, load, thread_pool};
+use super::start::{files_of, load, thread_pool};
 use super::written::{Told, say_found};
 use super::{Done, RenderArgs, exit, print, results, say, warn, written};
 
@@ -45,6 +48,9 @@ pub struct MergeArgs {
     /// Exit with 4 where a warning says that a number is wrong (severity "untrusted").
     #[arg(long)]
     pub strict: bool,
+    /// Print what replicates and doublings say of each receiver.
+    #[arg(long)]
+    pub diagnose: bool,
     /// No progress bar and no summary.
     #[arg(long)]
     pub quiet: bool,
@@ -136,27 +142,47 @@ pub fn merge(args: &MergeArgs) -> Done {
     let pool = thread_pool(args.threads)?;
     let progress = Progress::new(args.quiet, "adding parts", 0);
     let mut course = Course::new(Together::new(&scene, &plan)?);
+    let mut photons = scene.camera.as_ref().map(|_| AnyPhotons::new(&scene)).transpose()?;
     for part in &saved {
-        part.add_to(&mut course.run)?;
+        part.add_to(&mut course.run, photons.as_mut())?;
         course.trace_s += part.head.trace_s();
     }
     course.run.whole();
     progress.clear();
-    run_state::write(&state, &Head::of(&course, None, None), &course.run)?;
-    let watched = Watched { interrupt: &INTERRUPTED, progress: &|_| {} };
+    match &photons {
+        None => run_state::write(&state, &Head::of(&course, None, None), |out| course.run.write(out))?,
+        // Nothing can be added to a picture.
+        Some(_) => run_state::remove(&state),
+    }
     let told = Told {
         folder: &folder,
         output: &args.output,
         inputs,
         save_map: None,
         started,
+        diagnose: args.diagnose,
         quiet: args.quiet,
         strict: args.strict,
     };
     pool.install(|| {
-        let outcome = course.run(Goal::default(), watched, &mut Unkept)?;
-        written::write(&told, &scene, &outcome, None)
+        let watched = Watched { interrupt: &INTERRUPTED, progress: &|_| {} };
+        let mut outcome = course.run(Goal::default(), watched, &mut Unkept)?;
+        let picture = photons.map(|photons| seen(photons, &scene, &plan, args.quiet)).transpose()?;
+        if picture.is_some() {
+            // A run in one piece traces the replicates of a picture in turn, and does not know.
+            outcome.doublings.clear();
+        }
+        written::write(&told, &scene, &outcome, picture.as_ref())
     })
+}
+
+/// The picture of the photons of all parts.
+fn seen(photons: AnyPhotons, scene: &Scene, plan: &Plan, quiet: bool) -> Result<AnyPicture> {
+    let progress = Progress::new(quiet, "camera", 0);
+    let watch = Watch { interrupt: &INTERRUPTED, photons: &|_| {}, camera: &|share| progress.picture(share) };
+    let picture = photons.picture(scene, plan, watch);
+    progress.clear();
+    picture
 }
 
 fn is_built_in(name: &str) -> bool {

@@ -40,8 +40,9 @@ pub(super) struct Progress {
 /// What is shown. Many threads count; the drawing is a thread of its own.
 struct State {
     phase: Mutex<String>,
-    /// Photons done and to be done.
+    /// Photons done and to be done, and those of them that an earlier run did.
     done: AtomicU64,
+    earlier: AtomicU64,
     all: u64,
     /// The share of a picture that is done, in millionths; [`NO_PICTURE`] while photons are traced.
     picture: AtomicU64,
@@ -60,6 +61,7 @@ impl Progress {
         let state = Arc::new(State {
             phase: Mutex::new(phase.to_string()),
             done: AtomicU64::new(0),
+            earlier: AtomicU64::new(0),
             all: photons,
             picture: AtomicU64::new(NO_PICTURE),
             started: Instant::now(),
@@ -90,6 +92,12 @@ impl Progress {
         self.state.picture.store(NO_PICTURE, Ordering::Relaxed);
     }
 
+    /// So many photons were done by an earlier run.
+    pub fn after(&self, photons: u64) {
+        self.state.earlier.store(photons, Ordering::Relaxed);
+        self.inc(photons);
+    }
+
     /// This share of a picture is done.
     pub fn picture(&self, share: f64) {
         self.state.picture.store((1e6 * share.clamp(0.0, 1.0)) as u64, Ordering::Relaxed);
@@ -117,9 +125,10 @@ impl State {
             return line(columns, &phase, None, &[]);
         }
         let (done, all) = (self.done.load(Ordering::Relaxed).min(self.all), self.all);
-        let per_second = done as f64 / self.started.elapsed().as_secs_f64().max(1e-3);
+        let per_second = done.saturating_sub(self.earlier.load(Ordering::Relaxed)) as f64
+            / self.started.elapsed().as_secs_f64().max(1e-3);
         let share = done as f64 / all as f64;
-        if done == 0 {
+        if per_second <= 0.0 {
             return line(columns, &phase, Some(share), &[]);
         }
         let left = format!("{} left", duration((all - done) as f64 / per_second));
@@ -180,6 +189,7 @@ mod tests {
         State {
             phase: Mutex::new("tracing".into()),
             done: AtomicU64::new(done),
+            earlier: AtomicU64::new(0),
             all,
             picture: AtomicU64::new(picture),
             started: Instant::now() - Duration::from_secs(4),

@@ -8,14 +8,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::run_state::Head;
-use crate::run::replicates::{Course, is_together};
+use crate::run::kept::is_together;
+use crate::run::replicates::Course;
 use crate::run::share::{Message, Pause, Post, work};
 use crate::run::together::Together;
 use crate::run::{ErrorGoal, Plan};
 use crate::scene::Scene;
 
 use super::progress::{INTERRUPTED, catch_interrupts};
-use super::render::{load, thread_pool};
+use super::start::{load, thread_pool};
 use super::{MUTE, RenderArgs};
 
 /// What a rank has read: the same on every one, or they would trace different scenes.

@@ -3,56 +3,23 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::error::{Diagnostic, Kind, Result};
-use crate::files::folder::LOCK;
+use crate::error::Result;
 use crate::files::outputs::check_outputs;
-use crate::files::run_state::STATE;
-use crate::files::scene_toml::{self, RunDefaults};
+use crate::files::run_state::{self, STATE};
 use crate::files::set::Set;
-use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, trace_picture, warnings as seen_wrong};
+use crate::picture::{AnyPicture, Picture, Watch, picture_of_saved, warnings as seen_wrong};
 use crate::report::saved::SavedReport;
 use crate::report::vouched::vouching;
-use crate::run::replicates::is_together;
+use crate::run::kept::is_together;
 use crate::run::share::Post;
-use crate::run::{Outcome, Plan, choose_cells, trace};
+use crate::run::{Plan, choose_cells};
 use crate::scene::Scene;
-use crate::scene::receiver::Receiver;
 
-use super::args::MAX_THREADS;
 use super::long::{self, Asked};
-use super::misuse::a_folder;
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
-use super::written::{REPORT, Told, beside_earlier, endings, say_found, seen_wholly, strictly};
-use super::{Done, RenderArgs, exit, far_field, part, picture, print, ranks, results, say, warn, written};
-
-/// Reads and builds a scene, from its own folder alone if it is confined to that; without a path the built-in one.
-pub(super) fn load(
-    path: Option<&Path>,
-    confine: bool,
-    quiet: bool,
-) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
-    let name = path.map_or("the built-in scene".into(), |path| path.display().to_string());
-    let progress = Progress::new(quiet, &format!("reading {name}"), 0);
-    let loaded = load_in_phases(path, confine, || progress.phase(format!("building {name}")));
-    progress.clear();
-    loaded
-}
-
-fn load_in_phases(
-    path: Option<&Path>,
-    confine: bool,
-    building: impl FnOnce(),
-) -> std::result::Result<(Scene, RunDefaults), Vec<Diagnostic>> {
-    let file = match path {
-        Some(path) if path.is_dir() => return Err(a_folder(path, "a scene file (TOML)").into()),
-        Some(path) if confine => scene_toml::read_confined(path)?,
-        Some(path) => scene_toml::read(path)?,
-        None => scene_toml::built_in()?,
-    };
-    let run = file.run;
-    building();
-    Ok((file.build()?, run))
-}
+use super::start::{files_of, load, thread_pool};
+use super::written::{REPORT, Told, beside_earlier, say_found, seen_wholly, strictly};
+use super::{Done, RenderArgs, exit, part, picture, print, ranks, results, warn, written};
 
 /// Runs the subcommand; the exit code.
 pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
@@ -105,19 +72,14 @@ pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
         error.check(&scene, &plan)?;
     }
     check_shared(&scene, &plan)?;
-    let (outcome, picture) = if scene.camera.is_none() && is_together(&scene, &plan) {
-        let job = long::Job { scene: &scene, plan, goal, state: &state, part_of: None, quiet: args.quiet };
-        let outcome = match post {
-            None => pool.install(|| job.traced(saved.as_ref())),
-            Some(post) => job.traced_by_all(saved.as_ref(), post, &pool),
-        };
-        (outcome?, None)
-    } else {
-        if args.resume {
-            let why = long::why_no_state(&scene);
-            say(&format!("caustix: {why}, so it keeps no state: this one starts with its first photon"));
-        }
-        traced(args, &scene, &plan, &pool)?
+    let job = long::Job { scene: &scene, plan, goal, state: &state, part_of: None, quiet: args.quiet };
+    let is_kept = scene.camera.is_none() && is_together(&scene, &plan);
+    let (outcome, picture) = match post {
+        Some(post) => (job.traced_by_all(saved.as_ref(), post, &pool)?, None),
+        None => pool.install(|| match is_kept {
+            true => Ok((job.traced(saved.as_ref())?, None)),
+            false => job.in_turn(saved.as_ref(), args.save_map.is_some()),
+        })?,
     };
     let told = Told {
         folder: &folder,
@@ -125,33 +87,21 @@ pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
         inputs,
         save_map: args.save_map.as_deref(),
         started,
+        diagnose: args.diagnose,
         quiet: args.quiet,
         strict: args.strict,
     };
-    pool.install(|| written::write(&told, &scene, &outcome, picture.as_ref()))
+    let code = pool.install(|| written::write(&told, &scene, &outcome, picture.as_ref()))?;
+    if !is_kept && code != exit::INTERRUPTED && code != exit::WRONG {
+        // Nothing can be added to replicates in turn.
+        run_state::remove(&state);
+    }
+    Ok(code)
 }
 
 /// Every file that a run is to write.
 fn outputs(args: &RenderArgs, scene: &Scene) -> Vec<PathBuf> {
     files_of(scene, &args.output, args.map.is_none()).chain(args.save_map.clone()).collect()
-}
-
-/// Every file that the results of a scene are; `traced`: with those of its receivers and far fields.
-pub(super) fn files_of<'a>(
-    scene: &'a Scene,
-    output: &'a Path,
-    traced: bool,
-) -> impl Iterator<Item = PathBuf> + 'a {
-    let of_receiver = |receiver: &'a Receiver| {
-        let endings = endings(receiver).into_iter();
-        endings.map(|ending| format!("{}.{ending}", receiver.name))
-    };
-    let of_receivers = scene.receivers.iter().filter(move |_| traced).flat_map(of_receiver);
-    let of_fields = scene.far_fields.iter().filter(move |_| traced).flat_map(far_field::files);
-    let of_camera = scene.camera.iter().flat_map(|spec| picture::files(spec));
-    let names =
-        of_receivers.chain(of_fields).chain(of_camera).chain([REPORT, LOCK, STATE].map(str::to_string));
-    names.map(|name| output.join(name))
 }
 
 /// The camera's picture of saved photons, and nothing else.
@@ -199,37 +149,4 @@ fn of_saved<const C: usize>(args: &RenderArgs, map: &Path, scene: &Scene, plan: 
     let picture = pool.install(|| picture_of_saved(scene, plan, saved, watch));
     progress.clear();
     picture
-}
-
-fn traced(
-    args: &RenderArgs,
-    scene: &Scene,
-    plan: &Plan,
-    pool: &rayon::ThreadPool,
-) -> Result<(Outcome, Option<AnyPicture>)> {
-    let progress = Progress::new(args.quiet, "tracing", plan.photons());
-    let photons = |photons| progress.inc(photons);
-    let outcome = pool.install(|| {
-        if scene.camera.is_none() {
-            return Ok((trace(scene, plan, &INTERRUPTED, &photons)?, None));
-        }
-        let watch =
-            Watch { interrupt: &INTERRUPTED, photons: &photons, camera: &|share| progress.picture(share) };
-        let (outcome, picture) = trace_picture(scene, plan, args.save_map.is_some(), watch)?;
-        Ok((outcome, Some(picture)))
-    });
-    progress.clear();
-    outcome
-}
-
-/// The threads that are asked for, all cores where none are.
-pub(super) fn thread_pool(threads: Option<u32>) -> Result<rayon::ThreadPool> {
-    if let Some(threads) = threads.filter(|t| !(1..=MAX_THREADS).contains(t)) {
-        let found = format!("--threads {threads}");
-        return Err(Diagnostic::new(Kind::Range, found, format!("1 to {MAX_THREADS} threads")));
-    }
-    let threads = threads.unwrap_or(0);
-    rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build().map_err(|e| {
-        Diagnostic::new(Kind::Limit, format!("{threads} threads: {e}"), "threads that can be started")
-    })
 }

@@ -45,6 +45,8 @@ pub struct Told<'a> {
     pub save_map: Option<&'a Path>,
     /// When the command began.
     pub started: Instant,
+    /// What replicates and doublings say is told, too.
+    pub diagnose: bool,
     /// No summary.
     pub quiet: bool,
     /// Exit with another code where a number is wrong.
@@ -99,6 +101,11 @@ pub fn write(told: &Told<'_>, scene: &Scene, outcome: &Outcome, picture: Option<
         print(&text::summary(scene, outcome, &statistics, &files, total_s));
         report.far_fields.iter().zip(&scene.far_fields).for_each(|(of, field)| print(&of.text(field)));
         print(&report.camera.as_ref().map_or(String::new(), CameraReport::text));
+    }
+    if told.diagnose {
+        print(&report.diagnosis_text());
+    }
+    if !told.quiet {
         print(&results::written_to(folder, &written));
     }
     // What was known before is said before.

@@ -4,3 +4,4 @@ pub mod replicates;
 pub mod extremes;
 pub mod far_field;
 pub mod spot;
+pub mod diagnosis;

@@ -58,11 +58,7 @@ pub fn write<const C: usize>(map: &SavedMap<C>, writer: &mut dyn Write) -> io::R
     };
     put(&head)?;
     for some in map.photons.chunks(4096) {
-        let words = some.iter().flat_map(|p| {
-            let [x, y, z] = p.cell;
-            [x, y, z, p.direction, p.primitive, p.tag].into_iter().chain(p.weight.map(f32::to_bits))
-        });
-        put(&words.flat_map(u32::to_le_bytes).collect::<Vec<u8>>())?;
+        put(&some.iter().flat_map(Photon::bytes).collect::<Vec<u8>>())?;
     }
     writer.write_all(hash.finalize().as_slice())
 }
@@ -181,22 +177,11 @@ impl<'b> Reader<'b> {
     /// The photons: exactly what is left. No more is allocated than the file itself holds.
     fn photons<const C: usize>(&mut self) -> Result<Vec<Photon<C>>> {
         let count = u64::from_le_bytes(self.take()?);
-        let size = 24 + 4 * C;
+        let size = Photon::<C>::BYTES;
         if count != (self.0.len() / size) as u64 || !self.0.len().is_multiple_of(size) {
             let found = format!("{count} photons announced in {} bytes", self.0.len());
             return Err(Diagnostic::new(Kind::Syntax, found, format!("{size} bytes a photon")));
         }
-        let photon = |bytes: &[u8]| {
-            let mut words = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_le_bytes(*w));
-            let mut next = || words.next().unwrap_or_default();
-            Photon {
-                cell: [next(), next(), next()],
-                direction: next(),
-                primitive: next(),
-                tag: next(),
-                weight: std::array::from_fn(|_| f32::from_bits(next())),
-            }
-        };
-        Ok(self.0.chunks_exact(size).map(photon).collect())
+        Ok(self.0.chunks_exact(size).map(Photon::from_bytes).collect())
     }
 }

@@ -1,4 +1,4 @@
-//! Whole numbers as bytes, seven bits each, the lowest first: counts of a map are small, and most take one byte (LEB128).
+//! Numbers as bytes. Of whole ones seven bits each, the lowest first: counts of a map are small, and most take one byte (LEB128).
 
 use std::io::{self, Read, Write};
 
@@ -47,6 +47,36 @@ pub fn take(from: &mut dyn Read) -> io::Result<u64> {
         }
     }
     Err(damaged("a number of more than 64 bits"))
+}
+
+/// Writes floating-point numbers, to the bit.
+///
+/// # Errors
+/// Those of the writer.
+pub fn put_reals(out: &mut dyn Write, numbers: impl IntoIterator<Item = f64>) -> io::Result<()> {
+    let bytes: Vec<u8> = numbers.into_iter().flat_map(f64::to_le_bytes).collect();
+    out.write_all(&bytes)
+}
+
+/// Reads a floating-point number.
+///
+/// # Errors
+/// Those of the reader.
+pub fn take_real(from: &mut dyn Read) -> io::Result<f64> {
+    let mut bytes = [0; 8];
+    from.read_exact(&mut bytes)?;
+    Ok(f64::from_le_bytes(bytes))
+}
+
+/// Reads a number that is at most this one.
+///
+/// # Errors
+/// Those of the reader; a larger number.
+pub fn take_up_to(from: &mut dyn Read, most: u64, what: &str) -> io::Result<u64> {
+    match take(from)? {
+        number if number <= most => Ok(number),
+        number => Err(damaged(&format!("{number} {what}"))),
+    }
 }
 
 /// Reads a number that is to be this one.

@@ -14,16 +14,20 @@
 pub mod photon_map;
 pub mod gather;
 pub mod camera;
+pub mod part;
 pub mod summary;
 pub mod passes;
 pub mod warnings;
 
+use std::io::{self, Read};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::math::digest::sha256_hex;
-use crate::run::{Outcome, Plan, trace_by};
+use crate::run::together::Watched;
+use crate::run::turns::{KeepTurns, Stage, Turns, Unkept};
+use crate::run::{Outcome, Plan};
 use crate::scene::Scene;
 use crate::scene::camera::{Camera, Method};
 use crate::surface::{Grey, Rgb};
@@ -142,38 +146,73 @@ pub fn trace_picture(
     keep: bool,
     watch: Watch<'_>,
 ) -> Result<(Outcome, AnyPicture)> {
-    let camera = camera_of(scene)?;
+    trace_picture_from(Turns::new(scene, plan)?, None, keep, watch, &Unkept)
+}
+
+/// The same of a run that has begun, or goes on from what `state` holds; what there is is kept as `kept` asks.
+///
+/// # Errors
+/// As [`trace_picture`]; a state of another run.
+pub fn trace_picture_from(
+    turns: Turns<'_>,
+    state: Option<&mut dyn Read>,
+    hand_out: bool,
+    watch: Watch<'_>,
+    kept: &dyn KeepTurns,
+) -> Result<(Outcome, AnyPicture)> {
+    let scene = turns.scene();
     check(scene)?;
     if scene.is_coloured() {
-        let (outcome, picture) = with_channels::<3, _>(scene, camera, plan, keep, watch, Rgb::WHITE)?;
+        let (outcome, picture) = with_channels::<3, _>(turns, state, hand_out, watch, kept, Rgb::WHITE)?;
         Ok((outcome, AnyPicture::Rgb(picture)))
     } else {
-        let (outcome, picture) = with_channels::<1, _>(scene, camera, plan, keep, watch, Grey)?;
+        let (outcome, picture) = with_channels::<1, _>(turns, state, hand_out, watch, kept, Grey)?;
         Ok((outcome, AnyPicture::Grey(picture)))
     }
 }
 
 fn with_channels<const C: usize, T: Channels<C>>(
-    scene: &Scene,
-    camera: &Camera,
-    plan: &Plan,
-    keep: bool,
+    mut turns: Turns<'_>,
+    state: Option<&mut dyn Read>,
+    hand_out: bool,
     watch: Watch<'_>,
+    kept: &dyn KeepTurns,
     carried: T,
 ) -> Result<(Outcome, Picture<C>)> {
-    match camera.method {
-        Method::Map => {
-            let mut collector = Collector::new(scene, camera, plan, keep, watch)?;
-            let outcome = trace_by(
-                scene,
-                plan,
-                |tracer, end, receivers| collector.stage(tracer, end, receivers, carried),
-                watch.interrupt,
-            )?;
-            Ok((outcome, collector.finish()?))
-        }
-        Method::Splat => passes::splat::trace(scene, camera, plan, watch, carried),
+    let (scene, plan) = (turns.scene(), *turns.plan());
+    let camera = camera_of(scene)?;
+    if camera.method == Method::Splat {
+        return passes::splat::trace(turns, state, camera, watch, kept, carried);
     }
+    let mut collector = Collector::new(scene, camera, &plan, hand_out, watch, kept)?;
+    if let Some(from) = state {
+        turns.read(from).and_then(|()| collector.read(from)).map_err(|e| not_of_this(&e))?;
+    }
+    let watched = Watched { interrupt: watch.interrupt, progress: watch.photons };
+    turns.run(watched, &mut Mapped { collector: &mut collector, carried })?;
+    let picture = collector.finish(&turns)?;
+    Ok((turns.finish()?, picture))
+}
+
+/// A state that holds something else than this run.
+pub fn not_of_this(error: &io::Error) -> Diagnostic {
+    let required = "a state of this scene, with its camera, and of these settings";
+    Diagnostic::new(Kind::Syntax, format!("a state that holds {error}"), required)
+}
+
+/// Photons that a collector keeps.
+struct Mapped<'c, 'a, const C: usize, T> {
+    collector: &'c mut Collector<'a, C>,
+    carried: T,
+}
+
+impl<const C: usize, T: Channels<C>> Stage for Mapped<'_, '_, C, T> {
+    fn stage(&mut self, turns: &mut Turns<'_>, end: u64) -> Result<bool> {
+        self.collector.stage(turns, end, self.carried)
+    }
+
+    /// A collector keeps what there is after every range of photons.
+    fn turned(&mut self, _: &Turns<'_>) {}
 }
 
 /// Whether a scene's camera can see photons that another run saved; told before anything is made of them.
@@ -216,9 +255,9 @@ pub fn picture_of_saved<const C: usize>(
 ) -> Result<Picture<C>> {
     check_saved(scene, &saved)?;
     let started = Instant::now();
-    let mut collector = Collector::new(scene, camera_of(scene)?, plan, false, watch)?;
+    let mut collector = Collector::new(scene, camera_of(scene)?, plan, false, watch, &Unkept)?;
     collector.adopt(saved);
-    let mut picture = collector.finish()?;
+    let mut picture = collector.finish(&Turns::new(scene, plan)?)?;
     picture.summary.time_s = started.elapsed().as_secs_f64();
     Ok(picture)
 }

@@ -16,6 +16,7 @@ use crate::scene::receiver::Receiver;
 use crate::transport::census::Exceptions;
 
 use super::camera::CameraReport;
+use super::diagnosis::{self, DiagnosisReport};
 use super::far_field::{self, FarFieldStatistics};
 use super::numbers::grouped;
 use super::statistics::ReceiverStatistics;
@@ -151,6 +152,9 @@ pub struct TimeReport {
     pub total_s: f64,
     /// Photons over tracing time, 1/s.
     pub photons_per_s: f64,
+    /// Figure of merit of each receiver's flux, 1 / (relative standard error^2 x tracing time), 1/s; absent where none is known.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub merit_per_s: BTreeMap<String, f64>,
 }
 
 /// Where photons ended.
@@ -224,6 +228,9 @@ pub struct ReceiverReport<'a> {
     pub numbers: &'a ReceiverStatistics,
     /// Files written for it.
     pub files: &'a [String],
+    /// What replicates and doublings say of it; absent for one replicate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<DiagnosisReport>,
     /// Codes of warnings for which its numbers are not to be trusted; absent where there is none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub untrusted: Vec<&'static str>,
@@ -297,7 +304,9 @@ impl<'a> Report<'a> {
         let trapped_lm =
             trapped.iter().map(|(n, count)| (n.clone(), *count as f64 * outcome.photon_lm)).collect();
         let photons = outcome.photons as f64;
-        let receivers = scene.receivers.iter().zip(statistics).zip(files);
+        let diagnoses = diagnosis::of_receivers(scene, outcome);
+        let merit_per_s = diagnosis::merits_per_s(scene, outcome, &diagnoses);
+        let receivers = scene.receivers.iter().zip(statistics).zip(files).zip(diagnoses);
         let rounded = scene.receivers.iter().zip(statistics).filter_map(rounded_hits);
         let spots = scene.receivers.iter().zip(statistics);
         let spots =
@@ -322,6 +331,7 @@ impl<'a> Report<'a> {
                 trace_s: outcome.trace_s,
                 total_s,
                 photons_per_s: if outcome.trace_s > 0.0 { photons / outcome.trace_s } else { 0.0 },
+                merit_per_s,
             },
             ledger_lm: LedgerReport {
                 emitted: ledger.total_emitted() as f64 * outcome.photon_lm,
@@ -347,10 +357,11 @@ impl<'a> Report<'a> {
             },
             exceptions: outcome.census.exceptions.clone(),
             receivers: receivers
-                .map(|((r, numbers), files)| ReceiverReport {
+                .map(|(((r, numbers), files), diagnosis)| ReceiverReport {
                     name: &r.name,
                     numbers,
                     files,
+                    diagnosis,
                     untrusted: untrusted(r),
                 })
                 .collect(),
@@ -383,6 +394,19 @@ impl<'a> Report<'a> {
         };
         self.far_fields = all().zip(files).map(report).collect();
         self.tell(all().flat_map(|(field, numbers)| numbers.warnings(field)).chain(of_files).collect());
+    }
+
+    /// What replicates and doublings say of the receivers, as it is printed.
+    pub fn diagnosis_text(&self) -> String {
+        let text = |receiver: &ReceiverReport<'_>| {
+            let merit = self.time.merit_per_s.get(receiver.name).copied();
+            Some(receiver.diagnosis.as_ref()?.text(receiver.name, merit))
+        };
+        match (self.standard_error_absent, self.receivers.is_empty()) {
+            (Some(why), _) => format!("\ndiagnosis  none: {why}\n"),
+            (None, true) => "\ndiagnosis  none: the scene has no receivers\n".to_owned(),
+            (None, false) => self.receivers.iter().filter_map(text).collect(),
+        }
     }
 
     /// Adds the camera and what its picture says of itself.

@@ -16,6 +16,7 @@ pub mod ply;
 pub mod vtp;
 pub mod picture;
 pub mod camera;
+pub mod diagnosis;
 pub mod json;
 pub mod vouched;
 pub mod saved;

@@ -9,6 +9,12 @@ use super::plan::Plan;
 /// Most counters of all replicates together: 2^27 of 8 bytes, a gibibyte.
 const MOST_COUNTERS: u64 = 1 << 27;
 
+/// Whether the replicates of a run advance together: unless their maps take more than a gibibyte, or the points are
+/// made for their number, so that a first part of them is no sample.
+pub fn is_together(scene: &Scene, plan: &Plan) -> bool {
+    are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
+}
+
 /// Whether there is room for the maps of all replicates.
 pub(super) fn are_kept(scene: &Scene, plan: &Plan) -> bool {
     counters(scene, plan) <= MOST_COUNTERS

@@ -4,17 +4,21 @@
 //! together, over all threads; [`Outcome`] keeps of each receiver and account the sum and the sum of squares over
 //! replicates.
 //!
-//! A picture is made by the same photons, one replicate after another: [`trace_by`] hands it the [`Tracer`] stage by
-//! stage. That function is all that the two know of each other.
+//! A picture is made by the same photons, one replicate after another: [`turns`] hands it the [`Tracer`] stage by stage. That
+//! file is all that the two know of each other.
 
 pub mod algorithm;
 pub mod plan;
 pub mod tracer;
 pub mod outcome;
-mod kept;
+pub mod kept;
+pub mod forecast;
 pub mod goal;
-pub mod in_turn;
+mod outcome_kept;
+mod reach;
+pub mod pace;
 pub mod together;
+pub mod turns;
 mod schedule;
 pub mod replicates;
 pub mod share;
@@ -24,7 +28,6 @@ pub mod warnings;
 
 pub use algorithm::{Algorithm, Variant};
 pub use goal::{ErrorGoal, ErrorOf, Goal};
-pub use in_turn::trace_by;
 pub use outcome::{Estimate, Outcome, Reached, StoppedBy};
 pub use pilot::choose_cells;
 pub use plan::{MAX_PHOTONS, MAX_REPLICATES, Plan, Settings};

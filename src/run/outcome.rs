@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::{Diagnostic, Kind};
+use crate::estimate::diagnosis::{Counted, Diagnosis};
 use crate::estimate::extremes::{Extremes, Interval, Map, Unknown};
 use crate::estimate::far_field::{self, Sums, Table};
 use crate::estimate::replicates::{standard_error_of_cell, standard_error_of_total};
@@ -45,21 +46,21 @@ pub struct Outcome {
     /// Where photons began and ended.
     pub ledger: Ledger,
     /// Photons absorbed by each surface, escaped, killed, trapped.
-    accounts: Moments,
+    pub(super) accounts: Moments,
     /// Of every cell, by receiver.
-    cells: Vec<Moments>,
+    pub(super) cells: Vec<Moments>,
     /// Of each receiver's total: one entry a receiver.
-    totals: Moments,
+    pub(super) totals: Moments,
     /// What each replicate counted.
-    by_replicate: Vec<ReplicateTotals>,
+    pub(super) by_replicate: Vec<ReplicateTotals>,
     /// Of every cell of an evaluation grid, by receiver; empty where it has none.
-    grids: Vec<Moments>,
+    pub(super) grids: Vec<Moments>,
     /// Of each evaluation grid's total.
-    grid_totals: Moments,
+    pub(super) grid_totals: Moments,
     /// Of every receiver whose spot is measured: what each replicate counted.
-    spots: Vec<Vec<SpotCount>>,
+    pub(super) spots: Vec<Vec<SpotCount>>,
     /// Of every far field.
-    far_fields: Vec<Sums>,
+    pub(super) far_fields: Vec<Sums>,
     /// Arrivals on the side of each receiver on which it does not count.
     pub turned_away: Vec<u64>,
     /// Arrivals on the side of each receiver on which it counts, of a history that it does not count.
@@ -252,6 +253,20 @@ impl Outcome {
     /// What each replicate counted in all, in their order.
     pub(crate) fn by_replicate(&self) -> &[ReplicateTotals] {
         &self.by_replicate
+    }
+
+    /// What replicates and doublings say of a receiver at which a photon arrives at most once, or not; `None` for one replicate.
+    pub(crate) fn diagnosis(&self, receiver: usize, is_once: bool) -> Option<Diagnosis> {
+        let photons = self.photons / u64::from(self.replicates.max(1));
+        let on = |totals: &ReplicateTotals| totals.receivers[receiver];
+        // An interrupt may have come after a doubling that is not in the sums.
+        let is_summed = |(k, counts): &(&u32, &Vec<Vec<u64>>)| {
+            **k < u64::BITS && 1 << **k <= photons && counts.len() == self.by_replicate.len()
+        };
+        let of = |counts: &Vec<Vec<u64>>| counts.iter().map(|counts| counts[receiver]).collect();
+        let first = self.doublings.iter().filter(is_summed).map(|(k, counts)| (1 << k, of(counts))).collect();
+        Counted { photons, on_receiver: self.by_replicate().iter().map(on).collect(), first, is_once }
+            .diagnosis()
     }
 
     /// Photons absorbed by each surface, then those escaped, then those killed, then those trapped.

@@ -2,20 +2,19 @@
 //! somebody stops it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::tally::Receivers;
 
 use super::goal::{ErrorGoal, Goal, Looks};
-use super::in_turn::trace_by;
-use super::kept::are_kept;
+use super::kept::is_together;
 use super::outcome::{Outcome, Reached, StoppedBy};
+use super::pace::Pace;
 use super::plan::Plan;
 use super::schedule::Schedule;
 use super::together::{COUNTERS_PER_PHOTON, Together, Watched};
-use super::tracer::Tracer;
+use super::turns::{self, ToReceivers, Turns};
 
 /// Traces a scene by a plan, on the current rayon pool. Setting `interrupt` ends the run early; `progress` is
 /// told numbers of photons as they are done.
@@ -32,13 +31,12 @@ pub fn trace(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    if !is_together(scene, plan) {
-        let stage = |tracer: &mut Tracer<'_>, end, receivers: &Receivers<'_>| {
-            tracer.trace(end, receivers, interrupt, progress)
-        };
-        return trace_by(scene, plan, stage, interrupt);
-    }
     let watched = Watched { interrupt, progress };
+    if !is_together(scene, plan) {
+        let mut turns = Turns::new(scene, plan)?;
+        turns.run(watched, &mut ToReceivers { watched, keep: &turns::Unkept })?;
+        return turns.finish();
+    }
     Course::new(Together::new(scene, plan)?).run(Goal::default(), watched, &mut Unkept)
 }
 
@@ -60,12 +58,6 @@ pub fn trace_until(
     Course::new(Together::new(scene, plan)?).run(goal, watched, &mut Unkept)
 }
 
-/// Whether the replicates of a run advance together: unless their maps take more than a gibibyte, or the points are
-/// made for their number, so that a first part of them is no sample.
-pub fn is_together(scene: &Scene, plan: &Plan) -> bool {
-    are_kept(scene, plan) && !plan.algorithm().sequence.needs_number()
-}
-
 /// A run on its way.
 #[derive(Debug)]
 pub struct Course<'s> {
@@ -77,39 +69,26 @@ pub struct Course<'s> {
     pub trace_s: f64,
 }
 
-/// What is told of a run, and kept of it, between blocks.
+/// What traces a run from pause to pause, and keeps and tells what there is in between.
 pub trait Keep {
     /// Keeps what there is; a run asks for it so seldom that it costs no more than a percent of its time.
     fn keep(&mut self, course: &Course<'_>);
 
-    /// Told after every look: the error, what is asked for, and how long it may take, s.
-    fn look(&mut self, error: f64, asked: f64, left_s: Option<f64>);
-}
-
-/// By whom the photons of a run are traced.
-pub trait Workers {
-    /// Traces all replicates up to this index; false where an interrupt came before, as [`Together::trace`].
+    /// Takes a run on to this index.
     ///
     /// # Errors
-    /// Those of [`Together::trace`], and of whoever else traces.
-    fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool>;
-
-    /// Does a sum that takes many threads.
-    fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R;
-}
-
-/// The threads of the current rayon pool.
-#[derive(Debug)]
-pub struct Alone;
-
-impl Workers for Alone {
+    /// Those of tracing.
     fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool> {
         run.trace(end, watched)
     }
 
+    /// Does a sum that takes many threads.
     fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R {
         sum()
     }
+
+    /// Told after every look: the error, what is asked for, and how long it may take, s.
+    fn look(&mut self, _error: f64, _asked: f64, _left_s: Option<f64>) {}
 }
 
 /// Nothing is kept.
@@ -118,12 +97,7 @@ pub struct Unkept;
 
 impl Keep for Unkept {
     fn keep(&mut self, _: &Course<'_>) {}
-    fn look(&mut self, _: f64, _: f64, _: Option<f64>) {}
 }
-
-/// What there is is kept after a second, and then when a hundred times as long as it takes has gone by.
-const FIRST_KEPT: Duration = Duration::from_secs(1);
-const KEEPING_PART: u32 = 100;
 
 impl<'s> Course<'s> {
     /// From the first photon, or from where `run` is.
@@ -131,32 +105,18 @@ impl<'s> Course<'s> {
         Self { run, looks: Looks::default(), trace_s: 0.0 }
     }
 
-    /// Runs to the end, on the current rayon pool.
+    /// Runs to the end.
     ///
     /// # Errors
     /// Interrupted before there was a result; a ledger that does not balance.
-    pub fn run(self, goal: Goal, watched: Watched<'_>, keep: &mut impl Keep) -> Result<Outcome> {
-        self.run_by(&mut Alone, goal, watched, keep)
-    }
-
-    /// The same by others.
-    ///
-    /// # Errors
-    /// Those of [`Self::run`] and of the workers.
-    pub fn run_by(
-        mut self,
-        workers: &mut impl Workers,
-        goal: Goal,
-        watched: Watched<'_>,
-        keep: &mut impl Keep,
-    ) -> Result<Outcome> {
+    pub fn run(mut self, goal: Goal, watched: Watched<'_>, keep: &mut impl Keep) -> Result<Outcome> {
         let (started, earlier_s) = (Instant::now(), self.trace_s);
         let mut outcome = Outcome::new(self.run.scene(), self.run.plan());
         let replicates = u64::from(self.run.plan().replicates());
         let mut schedule = Schedule::new(&self.run, &goal);
-        let (mut kept, mut keeping) = (started, Duration::ZERO);
+        let mut pace = Pace::new();
         if self.run.photons() > 0 && self.run.done() == self.run.farthest() {
-            workers.install(|| self.run.sum_up(&mut outcome));
+            keep.install(|| self.run.sum_up(&mut outcome));
         }
         let stopped_by = loop {
             if self.has_reached(goal.error) {
@@ -167,7 +127,7 @@ impl<'s> Course<'s> {
             }
             let Some(end) = schedule.next(&self.run) else { break StoppedBy::Time };
             let (before, block) = (self.run.photons(), Instant::now());
-            if !workers.trace(&mut self.run, end, watched)? {
+            if !keep.trace(&mut self.run, end, watched)? {
                 break StoppedBy::Interrupt;
             }
             schedule.measure(self.run.photons() - before, block.elapsed());
@@ -177,7 +137,7 @@ impl<'s> Course<'s> {
             // A sum over all counters for each that takes a percent of the time of the photons since the last.
             let news = (self.run.photons() - outcome.photons).saturating_mul(COUNTERS_PER_PHOTON);
             if is_over || is_look || outcome.photons == 0 || news >= self.run.counters() {
-                workers.install(|| self.run.sum_up(&mut outcome));
+                keep.install(|| self.run.sum_up(&mut outcome));
             }
             if let Some(goal) = goal.error.filter(|_| is_look) {
                 self.look(&goal, &outcome, &schedule, keep);
@@ -186,15 +146,13 @@ impl<'s> Course<'s> {
                 keep.keep(&self);
                 break StoppedBy::Interrupt;
             }
-            if kept.elapsed() >= FIRST_KEPT.max(keeping * KEEPING_PART) && !self.run.is_done() {
-                let begun = Instant::now();
-                keep.keep(&self);
-                (kept, keeping) = (Instant::now(), begun.elapsed());
+            if pace.is_due() && !self.run.is_done() {
+                pace.keep(|| keep.keep(&self));
             }
         };
         if stopped_by != StoppedBy::Interrupt {
             if outcome.photons < self.run.photons() {
-                workers.install(|| self.run.sum_up(&mut outcome));
+                keep.install(|| self.run.sum_up(&mut outcome));
             }
             keep.keep(&self);
         }

@@ -131,9 +131,22 @@ impl<'s> Together<'s> {
     /// # Errors
     /// Those of [`Tracer::trace`].
     pub fn trace(&mut self, end: u64, watched: Watched<'_>) -> Result<bool> {
+        let Watched { interrupt, progress } = watched;
+        self.trace_by(end, |tracer, end, receivers| tracer.trace(end, receivers, interrupt, progress))
+    }
+
+    /// The same by other hands, which take a tracer on to an index and add every arrival to the receivers once.
+    ///
+    /// # Errors
+    /// Those of tracing.
+    pub fn trace_by(
+        &mut self,
+        end: u64,
+        step: impl Fn(&mut Tracer<'s>, u64, &Receivers<'s>) -> Result<Traced> + Sync,
+    ) -> Result<bool> {
         let part_end = self.part.end;
         // Threads that one replicate leaves idle go on with the next.
-        self.replicas.par_iter_mut().try_for_each(|replica| replica.trace(end, part_end, watched))?;
+        self.replicas.par_iter_mut().try_for_each(|replica| replica.trace(end, part_end, &step))?;
         Ok(self.replicas.iter().all(|replica| replica.traced.complete))
     }
 
@@ -284,11 +297,16 @@ impl<'s> Replica<'s> {
         }
     }
 
-    fn trace(&mut self, end: u64, part_end: u64, Watched { interrupt, progress }: Watched<'_>) -> Result<()> {
+    fn trace(
+        &mut self,
+        end: u64,
+        part_end: u64,
+        step: impl Fn(&mut Tracer<'s>, u64, &Receivers<'s>) -> Result<Traced>,
+    ) -> Result<()> {
         while self.tracer.photons < end && self.traced.complete {
             let octave = self.octave();
             let next = octave.min(end);
-            let more = self.tracer.trace(next, &self.receivers, interrupt, progress)?;
+            let more = step(&mut self.tracer, next, &self.receivers)?;
             self.traced.merge(&more);
             if more.complete {
                 self.close_octave(octave, next, part_end);

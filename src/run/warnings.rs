@@ -10,9 +10,10 @@ use crate::scene::receiver::ReceiverSide;
 use crate::scene::sheets::{CLASH, Clash};
 use crate::transport::mixed::{self, Witness};
 
-use super::Outcome;
 use super::dark;
+use super::goal::REPLICATES;
 use super::kept::are_kept;
+use super::{Outcome, StoppedBy};
 
 /// The code of light that total reflection keeps.
 pub const TRAPPED: &str = "trapped";
@@ -61,6 +62,7 @@ pub fn warnings(scene: &Scene, outcome: &Outcome) -> Vec<Warning> {
     let is_explained = all.iter().any(|w| [LAMP_INSIDE, AIMED_AWAY].contains(&w.code));
     all.extend(dark::warnings(scene, outcome, is_explained));
     all.extend(run.in_turn());
+    all.extend(run.stopped_early());
     all.sort_by_key(|warning| std::cmp::Reverse(warning.severity));
     all
 }
@@ -283,6 +285,24 @@ impl Run<'_> {
             share: None,
             remedy: "fewer cells or replicates, if an interrupted run is to have error bars from the first second on"
                 .into(),
+        })
+    }
+
+    /// An error that decided when to stop, from few replicates.
+    fn stopped_early(&self) -> Option<Warning> {
+        let outcome = self.outcome;
+        let is_few = outcome.stopped_by == StoppedBy::Error && outcome.replicates < REPLICATES;
+        is_few.then(|| Warning {
+            severity: Severity::Note,
+            code: "few-replicates",
+            message: format!(
+                "the error decided when to stop, and {} replicates find one too small now and then: intervals of 95 % cover \
+                 down to 91 %",
+                outcome.replicates
+            ),
+            surfaces: Vec::new(),
+            share: None,
+            remedy: format!("--replicates {REPLICATES}, or more"),
         })
     }
 

@@ -127,6 +127,33 @@ impl Moments {
         self.replicates = replicates.len() as u32;
     }
 
+    /// Writes the sums.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        varint::put(out, [self.sum.len() as u64, u64::from(self.replicates)])?;
+        varint::put(out, self.sum.iter().chain(&self.odd).copied())?;
+        varint::put(out, self.square.iter().flat_map(|square| [*square as u64, (square >> 64) as u64]))
+    }
+
+    /// Takes sums that were written in the place of these.
+    ///
+    /// # Errors
+    /// Those of the reader; another number of sums.
+    pub fn read(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        varint::expect(from, self.sum.len() as u64, "sums")?;
+        self.replicates = varint::take_up_to(from, u32::MAX.into(), "replicates")? as u32;
+        for sum in self.sum.iter_mut().chain(&mut self.odd) {
+            *sum = varint::take(from)?;
+        }
+        for square in &mut self.square {
+            let (low, high) = (varint::take(from)?, varint::take(from)?);
+            *square = u128::from(high) << 64 | u128::from(low);
+        }
+        Ok(())
+    }
+
     /// Zeros again.
     pub fn clear(&mut self) {
         self.sum.fill(0);
@@ -149,6 +176,12 @@ mod tests {
         assert_eq!(moments.sum, [3 << 60, 8, 7]);
         assert_eq!(moments.square, [3 << 120, 34, 49]);
         assert_eq!(moments.odd, [2 << 60, 3, 7]);
+        let mut bytes = Vec::new();
+        moments.write(&mut bytes).unwrap();
+        let mut read = Moments::new(3);
+        read.read(&mut &bytes[..]).unwrap();
+        assert_eq!(read, moments);
+        assert!(Moments::new(4).read(&mut &bytes[..]).is_err());
         moments.clear();
         assert_eq!(moments, Moments::new(3));
     }

@@ -38,6 +38,34 @@ pub struct SpotCount {
     pub second: [u128; 2],
 }
 
+impl SpotCount {
+    /// Writes it.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let Self { cells, photons, first, second } = self;
+        varint::put(out, [cells.len() as u64, *photons])?;
+        varint::put(out, cells.iter().copied())?;
+        varint::put(out, first.iter().chain(second).flat_map(|sum| [*sum as u64, (sum >> 64) as u64]))
+    }
+
+    /// Reads one of a spot.
+    ///
+    /// # Errors
+    /// Those of the reader; one of another spot.
+    pub fn read(spot: Spot, from: &mut dyn Read) -> io::Result<Self> {
+        varint::expect(from, spot.cells() as u64, "fine cells")?;
+        let photons = varint::take(from)?;
+        let cells = (0..spot.cells()).map(|_| varint::take(from)).collect::<io::Result<_>>()?;
+        let mut wide = || -> io::Result<u128> {
+            let (low, high) = (varint::take(from)?, varint::take(from)?);
+            Ok(u128::from(high) << 64 | u128::from(low))
+        };
+        Ok(Self { cells, photons, first: [wide()?, wide()?], second: [wide()?, wide()?] })
+    }
+}
+
 impl SpotTally {
     /// Zeros.
     pub fn new(spot: Spot) -> Self {

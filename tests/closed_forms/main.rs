@@ -7,6 +7,7 @@ mod support;
 mod coverage;
 mod default_cells;
 mod determinism;
+mod diagnosis;
 mod diffuse_sheet;
 mod direct;
 mod disc;

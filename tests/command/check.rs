@@ -24,7 +24,10 @@ fn check_probes_with_photons_and_tells_what_a_run_would() {
     let s = Stranger::with(&[("right.toml", &with_pane(-1.0)), ("wrong.toml", &with_pane(1.0))]);
     let (code, out, err) = s.types("check right.toml --strict");
     assert_eq!((code, err.as_str()), (0, ""), "{out}");
-    assert!(out.ends_with("probe      4 096 photons: nothing to warn of\n"), "{out}");
+    assert!(
+        out.contains("probe      4 096 photons: nothing to warn of\nerror      1 % of cells: about 2^"),
+        "{out}"
+    );
     let probed = [
         "warning (found by a probe of 4 096 photons): untrusted: ",
         "\"lower\"",
@@ -44,6 +47,31 @@ fn check_probes_with_photons_and_tells_what_a_run_would() {
     let (_, out, _) = s.types("check right.toml --json");
     assert!(!out.contains("probe"), "{out}");
     assert_eq!(fs::read_dir(s.folder()).unwrap().count(), 2, "nothing is written");
+}
+
+#[test]
+fn what_an_error_takes_is_foretold() {
+    let s = Stranger::with(&[
+        ("scene.toml", &SCENE.replace("[4, 4]", "[24, 24]")),
+        ("dark.toml", &SCENE.replace("cells", "side = \"back\"\ncells")),
+    ]);
+    let (_, out, _) = s.types("check scene.toml --json");
+    let json: Value = serde_json::from_str(&out).unwrap();
+    let [cells, flux] = &json["forecast"].as_array().unwrap()[..] else { panic!("{out}") };
+    assert_eq!(
+        (&cells["error_of"], &flux["error_of"], &cells["error"]),
+        (&"cells".into(), &"flux".into(), &0.01.into())
+    );
+    assert!(
+        flux["photons"].as_u64() < cells["photons"].as_u64() && cells["seconds"].as_f64().unwrap() > 0.0,
+        "{out}"
+    );
+    s.is_told("render scene.toml -o out --quiet --error 1", 0, &[]);
+    let quotient = cells["photons"].as_f64().unwrap() / s.report("out")["photons"].as_f64().unwrap();
+    assert!((0.4..2.5).contains(&quotient), "{quotient}");
+    // Nothing arrives: no number of photons is told.
+    let (_, out, _) = s.types("check dark.toml --json");
+    assert!(!out.contains("forecast"), "{out}");
 }
 
 #[test]

@@ -11,6 +11,8 @@ mod contract;
 #[cfg(unix)]
 mod interrupts;
 mod lamp_set;
+#[cfg(unix)]
+mod long_runs;
 mod maps_open;
 mod misuse;
 mod outputs;

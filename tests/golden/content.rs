@@ -29,6 +29,8 @@ const KEYS_LEFT_OUT: [&str; 11] = [
     "sha256",
     "threads",
     "time",
+    // Of a forecast: how fast this machine is.
+    "seconds",
     "time_s",
 ];
 
@@ -66,6 +68,8 @@ pub fn parts(path: &Path) -> Option<Parts> {
         // compare.md: its tables are those of compare.csv, with times between them; photons as saved: a
         // binary file.
         "md" | "map" => None,
+        // The state of a run: its time of tracing is in it, and resumed runs are compared by their results.
+        "state" => None,
         other => panic!("{}: no way to compare a file .{other}", path.display()),
     }
 }

@@ -10,6 +10,7 @@ pub mod coverage;
 pub mod data;
 pub mod density;
 pub mod given;
+pub mod healthy;
 pub mod judge;
 pub mod lamp;
 pub mod ldt;

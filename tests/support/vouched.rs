@@ -45,7 +45,8 @@ pub fn whole(folder: &Path, list: &str) -> BTreeSet<String> {
     }
 }
 
-/// Everything that lies in a folder.
+/// Everything that lies in a folder, but for the state of the run, which changes while it lasts.
 pub fn names(folder: &Path) -> BTreeSet<String> {
-    fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| !name.starts_with("run.state")).collect()
 }

@@ -14,7 +14,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::lab::study::cells::MOST_CELLS;
 
 use super::args::{MAX_THREADS, whole};
-use super::render::load;
+use super::start::load;
 use super::{Done, warn};
 
 /// Most point sets of a variant.

@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use crate::cli::progress::{INTERRUPTED, processor_time};
-use crate::cli::render::thread_pool;
+use crate::cli::start::thread_pool;
 use crate::cli::{Done, exit};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::lab::room::measure::measure;

@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use crate::cli::progress::{INTERRUPTED, processor_time};
-use crate::cli::render::thread_pool;
+use crate::cli::start::thread_pool;
 use crate::cli::{Done, count, exit, in_option};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::parts::{from_bytes, to_bytes};

@@ -8,8 +8,11 @@ mod levels;
 mod mass;
 mod solve;
 
+use std::io::{self, Read, Write};
+
 use rayon::prelude::*;
 
+use crate::math::varint::{put, take, take_up_to};
 use crate::photometry::web::Symmetry;
 use crate::scene::far_field::FarField;
 use crate::scene::nodes::Nodes;
@@ -44,6 +47,33 @@ impl Sums {
         self.nodes.push(nodes);
         self.outside.push(outside);
         self.seen.push(seen);
+    }
+
+    /// Writes them.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        put(out, [self.nodes.len() as u64])?;
+        for ((nodes, outside), seen) in self.nodes.iter().zip(&self.outside).zip(&self.seen) {
+            put(out, [*outside, *seen])?;
+            put(out, nodes.iter().copied())?;
+        }
+        Ok(())
+    }
+
+    /// Takes those that were written, of so many replicates at most, with so many nodes.
+    ///
+    /// # Errors
+    /// Those of the reader; more replicates.
+    pub fn read(&mut self, from: &mut dyn Read, replicates: u32, nodes: usize) -> io::Result<()> {
+        self.clear();
+        for _ in 0..take_up_to(from, replicates.into(), "replicates of a far field")? {
+            let (outside, seen) = (take(from)?, take(from)?);
+            let nodes = (0..nodes).map(|_| take(from)).collect::<io::Result<_>>()?;
+            self.absorb(nodes, outside, seen);
+        }
+        Ok(())
     }
 
     /// None again.

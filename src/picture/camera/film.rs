@@ -1,8 +1,11 @@
 //! Pixels: luminance, standard error, bias; and the sums that they come from.
 
-use crate::error::{Diagnostic, Kind, Result};
+use std::io::{self, Read, Write};
 
-use super::pixel::PixelSums;
+use crate::error::{Diagnostic, Kind, Result};
+use crate::math::varint::{expect, put, put_reals, take_up_to};
+
+use super::pixel::{PixelSums, SETS};
 
 /// A finished picture. `C` channels: 1 (luminance) or 3 (linear sRGB whose Y is luminance), cd/m2.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +80,34 @@ impl<const C: usize> Sums<C> {
         let [across, down] = pixels.map(|n| n.div_ceil(TILE) as usize);
         let tiles = vec![PixelSums::NOTHING; across * down * TILE_PIXELS];
         Ok(Self { pixels, tiles, replicates: 0, sets: 0 })
+    }
+
+    /// Tiles that there are.
+    pub fn tile_count(&self) -> usize {
+        self.tiles.len() / TILE_PIXELS
+    }
+
+    /// Writes the sums, to the bit.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        put(out, [self.tiles.len() as u64, self.replicates.into(), self.sets.into()])?;
+        for tile in self.tiles.chunks(TILE_PIXELS) {
+            put_reals(out, tile.iter().flat_map(PixelSums::numbers))?;
+        }
+        Ok(())
+    }
+
+    /// Takes sums that were written in the place of these.
+    ///
+    /// # Errors
+    /// Those of the reader; sums of another picture.
+    pub fn read(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        expect(from, self.tiles.len() as u64, "pixels")?;
+        self.replicates = take_up_to(from, u32::MAX.into(), "replicates")? as u32;
+        self.sets = take_up_to(from, SETS.into(), "sets of samples")? as u32;
+        self.tiles.iter_mut().try_for_each(|sums| PixelSums::read(from).map(|read| *sums = read))
     }
 
     /// Takes everything so far for this many times as bright: photons, where a run ended with fewer than it

@@ -19,5 +19,6 @@ pub mod splat;
 
 pub use eye::Pass;
 pub use film::{Film, Sums};
+#[cfg(any(test, feature = "internals"))]
 pub use render::render;
 pub use view::View;

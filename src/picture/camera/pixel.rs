@@ -1,5 +1,8 @@
 //! What is kept of one pixel from pass to pass.
 
+use std::io::{self, Read};
+
+use crate::math::varint::take_real;
 use crate::picture::gather::ErrorSums;
 
 /// Sets that a pixel's samples are divided into: their spread is the error of the eye's sampling.
@@ -22,6 +25,23 @@ impl<const C: usize> PixelSums<C> {
 
     /// A pixel that an interrupt left unseen: black, its error and bias unknown.
     pub(crate) const UNSEEN: Self = Self { error: ErrorSums::UNKNOWN, ..Self::NOTHING };
+
+    /// All of its numbers, for [`Self::read`].
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> + use<C> {
+        self.value.into_iter().chain(self.by_set.map(f64::from)).chain(self.error.numbers())
+    }
+
+    /// Reads what [`Self::numbers`] gave.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub(crate) fn read(from: &mut dyn Read) -> io::Result<Self> {
+        let mut sums = Self::NOTHING;
+        sums.value.iter_mut().try_for_each(|value| take_real(from).map(|x| *value = x))?;
+        sums.by_set.iter_mut().try_for_each(|value| take_real(from).map(|x| *value = x as f32))?;
+        sums.error = ErrorSums::read(from)?;
+        Ok(sums)
+    }
 
     /// Square of the standard error of the luminance: that of the photons for these samples and that of the
     /// samples for these photons. NaN where a single replicate or a single set says nothing.

@@ -1,6 +1,8 @@
 //! Passes of the camera over its pixels, tile by tile over threads; the same bits for any number of them.
 
 use std::collections::BTreeMap;
+use std::io::{self, Read, Write};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -9,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::geometry::SurfaceId;
+use crate::math::varint::{put, take, take_up_to};
 use crate::sample::coordinates::{Chooser, Coordinates, Purpose};
 use crate::sequence::hash::stream_key;
 use crate::sequence::owen::OwenPoints;
@@ -33,6 +36,42 @@ pub struct Rendered {
     pub contradicted: BTreeMap<SurfaceId, u64>,
 }
 
+impl Rendered {
+    /// Adds what other tiles did.
+    pub fn merge(&mut self, other: Self) {
+        self.unseen += other.unseen;
+        self.killed += other.killed;
+        self.paths += other.paths;
+        for (surface, count) in other.contradicted {
+            *self.contradicted.entry(surface).or_default() += count;
+        }
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let Self { unseen, killed, paths, contradicted } = self;
+        put(out, [*unseen, *killed, *paths, contradicted.len() as u64])?;
+        put(out, contradicted.iter().flat_map(|(surface, count)| [u64::from(surface.0), *count]))
+    }
+
+    /// Reads what was written.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn read(from: &mut dyn Read) -> io::Result<Self> {
+        let (unseen, killed, paths) = (take(from)?, take(from)?, take(from)?);
+        let mut read = Self { unseen, killed, paths, ..Self::default() };
+        for _ in 0..take(from)? {
+            let surface = take_up_to(from, u32::MAX.into(), "surfaces")? as u32;
+            read.contradicted.insert(SurfaceId(surface), take(from)?);
+        }
+        Ok(read)
+    }
+}
+
 /// Coordinates of a pixel's samples that come from a net; those beyond are independent.
 const NET_COORDINATES: u32 = 12;
 /// Salt of the pixels' seeds.
@@ -49,6 +88,22 @@ pub fn render<const C: usize>(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Rendered> {
+    let all = 0..sums.tile_count();
+    render_tiles(view, pass, sums, all, interrupt, progress)
+}
+
+/// The same of some tiles alone; the pass is over with the last of them.
+///
+/// # Errors
+/// As [`render`].
+pub fn render_tiles<const C: usize>(
+    view: &View<'_>,
+    pass: &Pass<'_, C>,
+    sums: &mut Sums<C>,
+    tiles: Range<usize>,
+    interrupt: &AtomicBool,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Rendered> {
     if !(C == 3 || (C == 1 && !view.scene.is_coloured())) || sums.pixels != view.camera.pixels {
         return Err(Diagnostic::new(
             Kind::Range,
@@ -59,7 +114,10 @@ pub fn render<const C: usize>(
     let pixels = view.camera.pixels;
     let all = Mutex::new(Rendered::default());
     let sets = SETS.min(view.camera.samples);
-    sums.tiles.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
+    let (first, is_last) = (tiles.start, tiles.end == sums.tile_count());
+    let some = &mut sums.tiles[tiles.start * TILE_PIXELS..tiles.end * TILE_PIXELS];
+    some.par_chunks_mut(TILE_PIXELS).enumerate().for_each(|(tile, sums)| {
+        let tile = first + tile;
         let mut brush = Brush::new(view, pass, sets);
         let corner = Sums::<C>::corner(pixels, tile);
         let (mut done, mut left) = (0, 0);
@@ -86,7 +144,7 @@ pub fn render<const C: usize>(
         drop(all);
         progress(done);
     });
-    if pass.finishes {
+    if pass.finishes && is_last {
         sums.replicates += pass.replicates.len() as u32;
     }
     sums.sets = sets;

@@ -13,6 +13,7 @@
 //!
 //! Sums are fixed-point integers of 128 bits, added in any order with the same result.
 
+use std::io::{self, Read, Write};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::{DVec2, DVec3};
@@ -20,6 +21,7 @@ use glam::{DVec2, DVec3};
 use crate::error::Result;
 use crate::estimate::replicates::FEWEST_HITS;
 use crate::geometry::{Hit, Side, SurfaceId, Whereabouts};
+use crate::math::varint::{expect, put, put_reals, take_real};
 use crate::picture::photon_map::Channels;
 use crate::picture::photon_map::sink::scattering_surfaces;
 use crate::scene::Scene;
@@ -78,6 +80,25 @@ impl<const C: usize> SplatMoments<C> {
         if replicates < 2 { f64::NAN } else { spread }
     }
 
+    /// Writes the sums, to the bit.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        put(out, [self.sum.len() as u64])?;
+        put_reals(out, self.sum.iter().flatten().chain(&self.square).copied())
+    }
+
+    /// Takes sums that were written in the place of these.
+    ///
+    /// # Errors
+    /// Those of the reader; sums of another picture.
+    pub fn read(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        expect(from, self.sum.len() as u64, "pixels")?;
+        let mut all = self.sum.iter_mut().flatten().chain(&mut self.square);
+        all.try_for_each(|sum| take_real(from).map(|x| *sum = x))
+    }
+
     /// Zeros again.
     pub fn restart(&mut self) {
         self.sum.fill([0.0; C]);
@@ -120,6 +141,11 @@ impl<'s, const C: usize> Splat<'s, C> {
             joined: AtomicU64::new(0),
             cut: AtomicU64::new(0),
         })
+    }
+
+    /// Goes on from so many arrivals that reached a pixel and so many contributions that were cut.
+    pub fn after(&mut self, joined: u64, cut: u64) {
+        (*self.joined.get_mut(), *self.cut.get_mut()) = (joined, cut);
     }
 
     /// A handle for one batch of photons, which counts them on receivers as well.

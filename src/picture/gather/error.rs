@@ -3,8 +3,10 @@
 //! Error: the spread of the replicates' sums, R s^2 (METHOD 7), and what places with hardly a photon owe.
 //! Bias: the difference between the two bandwidths.
 
+use std::io::{self, Read};
 use std::ops::Range;
 
+use crate::math::varint::take_real;
 use crate::surface::luminance_of;
 
 use super::BIAS_PER_DIFFERENCE;
@@ -58,6 +60,24 @@ impl<const C: usize> ErrorSums<C> {
             self.photons_square += all * all;
             self.open = [0.0; C];
         }
+    }
+
+    /// All of its numbers, for [`Self::read`].
+    pub fn numbers(&self) -> impl Iterator<Item = f64> + use<C> {
+        let Self { difference, nearest_bias, sparse_square, photons, photons_square, open } = *self;
+        [difference, nearest_bias, sparse_square, photons, photons_square].into_iter().chain(open)
+    }
+
+    /// Reads what [`Self::numbers`] gave.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn read(from: &mut dyn Read) -> io::Result<Self> {
+        let mut read = Self::NOTHING;
+        let Self { difference, nearest_bias, sparse_square, photons, photons_square, open } = &mut read;
+        let all = [difference, nearest_bias, sparse_square, photons, photons_square];
+        all.into_iter().chain(open).try_for_each(|number| take_real(from).map(|x| *number = x))?;
+        Ok(read)
     }
 
     /// Takes out what the replicate that is not finished made, by channel.

@@ -11,7 +11,7 @@ pub(crate) fn capacity<const C: usize>(camera: &Camera) -> usize {
 }
 
 /// What photons may leave above what is foretold: an eighth and some, so that few ranges are traced twice.
-fn with_reserve(photons: f64) -> f64 {
+pub(crate) fn with_reserve(photons: f64) -> f64 {
     1.125 * photons + 1024.0
 }
 

@@ -6,14 +6,18 @@
 //! before it. Where that fails the store is full before the range ends: receivers have counted it, its
 //! photons are dropped, and it is traced again in halves for the camera alone.
 
+use std::io::{self, Read, Write};
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::error::Result;
+use crate::math::varint::{damaged, expect, put, put_reals, take, take_real, take_up_to};
 use crate::picture::camera::Pass;
 use crate::picture::photon_map::{Channels, Kept, Photon, PhotonMap, PhotonStore, SavedMap};
 use crate::picture::summary::{Cost, PictureSummary};
 use crate::picture::{Picture, Watch, hash_of_photons, settings_of};
+use crate::run::turns::{KeepTurns, Turns, Unkept};
 use crate::run::{Plan, Tracer};
 use crate::scene::Scene;
 use crate::scene::camera::Camera;
@@ -22,6 +26,9 @@ use crate::transport::parallel::Traced;
 
 use super::budget::{Budget, capacity};
 use super::eye::Eye;
+
+/// Tiles that are seen before it is looked whether what there is should be kept.
+const TILES_AT_A_TIME: usize = 256;
 
 /// Photons on their way into a picture.
 pub(crate) struct Collector<'a, const C: usize> {
@@ -44,6 +51,9 @@ pub(crate) struct Collector<'a, const C: usize> {
     /// Whether the last pass was of a part of a replicate that is to go on.
     open: bool,
     camera_s: f64,
+    /// Tiles that have been seen of a pass in which a run stands that goes on.
+    in_pass: Option<usize>,
+    keep: &'a dyn KeepTurns,
 }
 
 impl<'a, const C: usize> Collector<'a, C> {
@@ -55,8 +65,9 @@ impl<'a, const C: usize> Collector<'a, C> {
         scene: &'a Scene,
         camera: &Camera,
         plan: &Plan,
-        keep: bool,
+        hand_out: bool,
         watch: Watch<'a>,
+        keep: &'a dyn KeepTurns,
     ) -> Result<Self> {
         Ok(Self {
             scene,
@@ -64,7 +75,7 @@ impl<'a, const C: usize> Collector<'a, C> {
             watch,
             eye: Eye::new(scene, camera, plan, watch)?,
             store: PhotonStore::new(scene),
-            budget: Budget::new(capacity::<C>(camera), keep),
+            budget: Budget::new(capacity::<C>(camera), hand_out),
             held: Kept::default(),
             held_of: 0..0,
             whole: true,
@@ -73,54 +84,65 @@ impl<'a, const C: usize> Collector<'a, C> {
             passes: 0,
             open: false,
             camera_s: 0.0,
+            in_pass: None,
+            keep,
         })
     }
 
-    /// Takes a tracer on to photon number `end`, in as many ranges as memory asks for. An incomplete one is
-    /// not accepted.
+    /// Takes the tracer of a run on to photon number `end`, in as many ranges as memory asks for; false where that is not
+    /// complete. An incomplete range is not accepted.
     ///
     /// # Errors
     /// Those of tracing, and of a pass.
     pub(crate) fn stage<T: Channels<C>>(
         &mut self,
-        tracer: &mut Tracer<'_>,
+        turns: &mut Turns<'_>,
         end: u64,
-        receivers: &Receivers<'_>,
         carried: T,
-    ) -> Result<Traced> {
-        let mut all = Traced::new(self.scene);
-        let (n, from) = (self.plan.photons_per_replicate(), tracer.photons);
+    ) -> Result<bool> {
+        if self.in_pass.is_some() {
+            // A run that goes on stands in the midst of a pass.
+            self.pass(turns, false)?;
+        }
+        let (n, from) = (self.plan.photons_per_replicate(), turns.tracer.photons);
         // A pass is of whole replicates or of a part of one: the camera's error comes from whole ones.
-        if tracer.points.replicate > 0 && from == 0 && self.budget.foretold(n) > self.budget.room() {
-            self.pass_unless_empty()?;
+        if turns.tracer.points.replicate > 0 && from == 0 && self.budget.foretold(n) > self.budget.room() {
+            self.pass_unless_empty(turns)?;
         }
-        while tracer.photons < end && all.complete {
-            let to = self.budget.next_end(tracer.photons, end);
-            if self.budget.foretold(to - tracer.photons) > self.budget.room() {
-                self.pass_unless_empty()?;
+        while turns.tracer.photons < end {
+            let to = self.budget.next_end(turns.tracer.photons, end);
+            if self.budget.foretold(to - turns.tracer.photons) > self.budget.room() {
+                self.pass_unless_empty(turns)?;
             }
-            let before = *tracer;
+            let before = turns.tracer;
             let most = self.budget.room();
+            let Turns { tracer, receivers, replica, .. } = turns;
             let (traced, kept) = self.range(tracer, to, most, receivers, carried, self.watch.photons)?;
-            all.merge(&traced);
+            replica.merge(&traced);
+            if !traced.complete {
+                return Ok(false);
+            }
             match kept {
-                _ if !traced.complete => {}
                 Some(kept) => self.accept(kept, &before, to),
-                None => self.again(before, to, carried)?,
+                None => self.again(turns, before, to, carried)?,
+            }
+            if self.keep.is_due() {
+                self.keep
+                    .keep(turns, &mut |out| self.write(out, &self.held_of, None, self.held.iter().flatten()));
             }
         }
-        if all.complete && end == n && self.open {
-            self.pass(false)?;
+        if end == n && self.open {
+            self.pass(turns, false)?;
         }
-        Ok(all)
+        Ok(true)
     }
 
-    fn pass_unless_empty(&mut self) -> Result<()> {
+    fn pass_unless_empty(&mut self, turns: &Turns<'_>) -> Result<()> {
         if self.held_of.is_empty() {
             return Ok(());
         }
         self.budget.keep = false;
-        self.pass(false).map(|_| ())
+        self.pass(turns, false).map(|_| ())
     }
 
     fn range<T: Channels<C>>(
@@ -158,9 +180,17 @@ impl<'a, const C: usize> Collector<'a, C> {
 
     /// A range that left more photons than there was room for, traced for the camera alone: at once where the
     /// room was what others left, else in halves.
-    fn again<T: Channels<C>>(&mut self, before: Tracer<'_>, to: u64, carried: T) -> Result<()> {
+    fn again<T: Channels<C>>(
+        &mut self,
+        turns: &Turns<'_>,
+        before: Tracer<'_>,
+        to: u64,
+        carried: T,
+    ) -> Result<()> {
         let had_all_room = self.budget.held == 0;
-        self.pass_unless_empty()?;
+        // The run has counted the range already: from here it cannot be gone on from.
+        let keep = std::mem::replace(&mut self.keep, &Unkept);
+        self.pass_unless_empty(turns)?;
         let nobody = Receivers::new(&self.scene.geometry, &[]);
         let mut tracer = before;
         let mut length = to - before.photons;
@@ -175,9 +205,10 @@ impl<'a, const C: usize> Collector<'a, C> {
             match self.range(&mut tracer, part, most, &nobody, carried, &|_| {})? {
                 (traced, _) if !traced.complete => break,
                 (_, Some(kept)) => self.accept(kept, &from, part),
-                (_, None) => self.again(from, part, carried)?,
+                (_, None) => self.again(turns, from, part, carried)?,
             }
         }
+        self.keep = keep;
         Ok(())
     }
 
@@ -196,8 +227,9 @@ impl<'a, const C: usize> Collector<'a, C> {
 
     /// Shows the camera what is held. In the last pass a photon's flux is known exactly; before, it is that
     /// of the run as planned. Light that no photon brings is seen in the last pass.
-    fn pass(&mut self, last: bool) -> Result<Option<Vec<Photon<C>>>> {
+    fn pass(&mut self, turns: &Turns<'_>, last: bool) -> Result<Option<Vec<Photon<C>>>> {
         let started = Instant::now();
+        let first_tile = self.in_pass.take().unwrap_or(0);
         if last {
             self.drop_unfinished();
         }
@@ -209,17 +241,95 @@ impl<'a, const C: usize> Collector<'a, C> {
             // An interrupted run: earlier passes took a photon for less than it turned out to be.
             self.eye.sums.scale(exact_lm / planned_lm);
         }
-        let in_pass = std::mem::take(&mut self.budget.held) as f64;
+        let in_pass = self.budget.held as f64;
         // A bandwidth is for the photons of the whole run: a pass has a part of them.
         let part = if self.budget.kept == 0 { 1.0 } else { in_pass / self.budget.kept as f64 };
         let replicates = std::mem::replace(&mut self.held_of, 0..0);
-        let pass = Pass { densities: &[], replicates, finishes: self.whole, emission: last, direct: last };
         let (held, frame) = (std::mem::take(&mut self.held), self.store.frame());
-        let maps = self.eye.add(held, frame, photon_lm, part * photon_lm / exact_lm, pass)?;
+        let part_of_run = part * photon_lm / exact_lm;
+        let maps = self.eye.maps(held, frame, part_of_run, replicates.len() as u32);
+        let densities = self.eye.densities(&maps, photon_lm, part_of_run);
+        let pass = Pass {
+            densities: &densities,
+            replicates: replicates.clone(),
+            finishes: self.whole,
+            emission: last,
+            direct: last,
+        };
+        let tiles = self.eye.tile_count();
+        for first in (first_tile..tiles).step_by(TILES_AT_A_TIME) {
+            let end = tiles.min(first + TILES_AT_A_TIME);
+            self.eye.look(&pass, first..end)?;
+            let is_whole = !self.watch.interrupt.load(Ordering::Relaxed);
+            if end < tiles && is_whole && self.keep.is_due() {
+                let photons = || maps.iter().map(PhotonMap::photons);
+                self.keep.keep(turns, &mut |out| self.write(out, &replicates, Some(end), photons()));
+            }
+        }
+        drop(densities);
+        self.budget.held = 0;
         self.open = !self.whole;
         self.passes += 1;
         self.camera_s += started.elapsed().as_secs_f64();
         Ok(self.budget.keep.then(|| maps.each_ref().map(PhotonMap::photons).concat()))
+    }
+
+    /// Writes the picture as far as it is, with the photons that are held for a pass, or in it after so many tiles.
+    fn write<'p>(
+        &self,
+        out: &mut dyn Write,
+        held_of: &Range<u32>,
+        in_pass: Option<usize>,
+        photons: impl Iterator<Item = impl AsRef<[Photon<C>]>> + 'p,
+    ) -> io::Result<()> {
+        let Budget { held, traced, kept, keep, .. } = self.budget;
+        put(out, [C as u64, held as u64, traced, kept, u64::from(keep)])?;
+        put(out, [held_of.start.into(), held_of.end.into(), self.whole.into(), self.replicates.into()])?;
+        put(out, [self.passes.into(), self.open.into(), in_pass.map_or(0, |tiles| tiles as u64)])?;
+        put_reals(out, [self.camera_s])?;
+        self.eye.write(out)?;
+        for some in photons {
+            for some in some.as_ref().chunks(1 << 12) {
+                out.write_all(&some.iter().flat_map(Photon::bytes).collect::<Vec<u8>>())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on from what was written, of the same scene, camera and plan.
+    ///
+    /// # Errors
+    /// Those of the reader; what is of another picture.
+    pub(crate) fn read(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        expect(from, C as u64, "channels")?;
+        let most = capacity::<C>(&self.eye.view.camera) as u64;
+        // What a single photon leaves is held beyond that.
+        let held = take_up_to(from, most.max(1 << 24), "photons held")?;
+        (self.budget.traced, self.budget.kept) = (take(from)?, take(from)?);
+        self.budget.keep = take_up_to(from, 1, "flags")? == 1;
+        let replicate = |from: &mut dyn Read| take_up_to(from, self.plan.replicates().into(), "replicates");
+        self.held_of = replicate(from)? as u32..replicate(from)? as u32;
+        self.whole = take_up_to(from, 1, "flags")? == 1;
+        self.replicates = replicate(from)? as u32;
+        self.passes = take_up_to(from, u32::MAX.into(), "passes")? as u32;
+        self.open = take_up_to(from, 1, "flags")? == 1;
+        let tiles = take_up_to(from, self.eye.tile_count() as u64, "tiles")? as usize;
+        self.in_pass = Some(tiles).filter(|tiles| *tiles > 0);
+        self.camera_s = take_real(from)?;
+        self.eye.read(from)?;
+        let primitives = self.scene.geometry.primitive_count() as u64;
+        let mut bytes = vec![0; Photon::<C>::BYTES];
+        self.held = [vec![Vec::new()], vec![Vec::new()]];
+        for _ in 0..held {
+            from.read_exact(&mut bytes)?;
+            let photon = Photon::<C>::from_bytes(&bytes);
+            if u64::from(photon.primitive) >= primitives {
+                return Err(damaged("a photon on a surface that is not there"));
+            }
+            self.held[usize::from(photon.is_scattered())][0].push(photon);
+        }
+        self.budget.held = held as usize;
+        Ok(())
     }
 
     /// Drops what an interrupt left of a replicate: its photons are of a part of the emitters' directions,
@@ -240,8 +350,8 @@ impl<'a, const C: usize> Collector<'a, C> {
     ///
     /// # Errors
     /// Those of a pass.
-    pub(crate) fn finish(mut self) -> Result<Picture<C>> {
-        let kept = self.pass(true)?;
+    pub(crate) fn finish(mut self, turns: &Turns<'_>) -> Result<Picture<C>> {
+        let kept = self.pass(turns, true)?;
         let photons = kept.map(|photons| SavedMap {
             scene_hash: hash_of_photons(self.scene, &self.plan),
             settings: settings_of(&self.plan),

@@ -3,13 +3,15 @@
 //! A pass is of whole replicates or of a part of one, whose partial sum then stays open: the standard error
 //! comes from whole ones.
 
+use std::io::{self, Read, Write};
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::error::Result;
+use crate::math::varint::{damaged, put, put_reals, take, take_real, take_up_to};
 use crate::picture::Watch;
-use crate::picture::camera::render;
-use crate::picture::camera::render::Rendered;
+use crate::picture::camera::render::{Rendered, render_tiles};
 use crate::picture::camera::{Film, Pass, Sums, View};
 use crate::picture::gather::footprint::Footprints;
 use crate::picture::gather::{Choice, Density, bandwidth};
@@ -34,6 +36,8 @@ pub(crate) struct Eye<'a, const C: usize> {
     pub(crate) view: View<'a>,
     watch: Watch<'a>,
     rendered: Rendered,
+    /// Whether the tracing had been interrupted when the pass began.
+    was_interrupted: bool,
     footprints: Arc<Footprints<'a>>,
     /// What is seen so far.
     pub(crate) sums: Sums<C>,
@@ -52,6 +56,7 @@ impl<'a, const C: usize> Eye<'a, C> {
             view: View::new(scene, camera, plan.seed())?,
             watch,
             rendered: Rendered::default(),
+            was_interrupted: false,
             footprints: Arc::new(Footprints::new(&scene.geometry)),
             sums: Sums::new(camera.pixels)?,
             replicates: plan.replicates(),
@@ -81,22 +86,31 @@ impl<'a, const C: usize> Eye<'a, C> {
         map.rebuilt(found.radius_m)
     }
 
-    /// Adds what is seen in a pass of these photons: of one of them the flux is that of the whole run, all are `part` of
-    /// its photons. Gives them as they were mapped.
-    pub(crate) fn add(
+    /// The maps of a pass of these photons, which are `part` of all; they settle the bandwidths if nothing has.
+    pub(crate) fn maps(
         &mut self,
         [caustic, diffuse]: Kept<C>,
         frame: Frame,
+        part: f64,
+        replicates: u32,
+    ) -> [PhotonMap<C>; 2] {
+        let caustic = self.map_of(0, joined(caustic), frame, part, replicates);
+        [caustic, self.map_of(1, joined(diffuse), frame, part, replicates)]
+    }
+
+    /// The densities of these maps: of one photon the flux is that of the whole run.
+    pub(crate) fn densities<'m>(
+        &self,
+        maps: &'m [PhotonMap<C>; 2],
         photon_lm: f64,
         part: f64,
-        pass: Pass<'_, C>,
-    ) -> Result<[PhotonMap<C>; 2]> {
-        let replicates = pass.replicates.len() as u32;
-        let caustic = self.map_of(0, joined(caustic), frame, part, replicates);
-        let maps = [caustic, self.map_of(1, joined(diffuse), frame, part, replicates)];
+    ) -> Vec<Density<'m, C>>
+    where
+        'a: 'm,
+    {
         // The neighbours of a pass are a part of those of the run.
         let of_pass = |n: u32| ((f64::from(n) * part + 0.5) as u32).max(FEWEST_IN_PASS.min(n));
-        let density = |map, settled: Settled| {
+        let density = |map: &'m PhotonMap<C>, settled: Settled| {
             let bandwidth = match settled.bandwidth {
                 Bandwidth::Nearest(n) => Bandwidth::Nearest(of_pass(n)),
                 Bandwidth::AtLeast { radius_m, neighbours } => {
@@ -108,27 +122,84 @@ impl<'a, const C: usize> Eye<'a, C> {
             Density::new(Arc::clone(&self.footprints), map, photon_lm, choice)
         };
         let with_photons = maps.iter().zip(self.bandwidths).filter(|(map, _)| !map.photons().is_empty());
-        let densities: Vec<Density<'_, C>> =
-            with_photons.filter_map(|(map, settled)| Some(density(map, settled?))).collect();
-        self.look(&Pass { densities: &densities, ..pass })?;
-        Ok(maps)
+        with_photons.filter_map(|(map, settled)| Some(density(map, settled?))).collect()
     }
 
-    /// Adds what is seen in a pass. Ctrl-C while tracing: stop tracing, render what has been traced. Ctrl-C while rendering the last pass, which shows
-    /// emitters: stop.
-    pub(crate) fn look(&mut self, pass: &Pass<'_, C>) -> Result<()> {
+    /// Tiles of the picture.
+    pub(crate) fn tile_count(&self) -> usize {
+        self.sums.tile_count()
+    }
+
+    /// Adds what is seen in a pass, in some tiles of the picture. Ctrl-C while tracing: stop tracing, render what has been traced.
+    /// Ctrl-C while rendering the last pass, which shows emitters: stop.
+    pub(crate) fn look(&mut self, pass: &Pass<'_, C>, tiles: Range<usize>) -> Result<()> {
+        let (first, all) = (tiles.start, self.tile_count());
         let [columns, rows] = self.sums.pixels.map(u64::from);
-        let done = AtomicU64::new(0);
+        let done = AtomicU64::new(columns * rows * first as u64 / all as u64);
         let tell = |pixels: u64| {
             let before = done.fetch_add(pixels, Ordering::Relaxed);
             (self.watch.camera)((before + pixels) as f64 / (columns * rows) as f64);
         };
         let never = AtomicBool::new(false);
-        let was_interrupted = self.watch.interrupt.load(Ordering::Relaxed);
-        let interrupt = if was_interrupted || !pass.emission { &never } else { self.watch.interrupt };
-        // The eye's paths are the same in every pass.
-        self.rendered = render(&self.view, pass, &mut self.sums, interrupt, &tell)?;
+        if first == 0 {
+            // The eye's paths are the same in every pass.
+            self.rendered = Rendered::default();
+            self.was_interrupted = self.watch.interrupt.load(Ordering::Relaxed);
+        }
+        let interrupt = if self.was_interrupted || !pass.emission { &never } else { self.watch.interrupt };
+        let some = render_tiles(&self.view, pass, &mut self.sums, tiles, interrupt, &tell)?;
+        self.rendered.merge(some);
         Ok(())
+    }
+
+    /// Writes what is seen so far, and what is settled.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub(crate) fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        for settled in self.bandwidths {
+            put(out, [u64::from(settled.is_some())])?;
+            if let Some(Settled { bandwidth, chosen }) = settled {
+                let (kind, number, radius_m) = match bandwidth {
+                    Bandwidth::Automatic => (0, 0, 0.0),
+                    Bandwidth::AtLeast { radius_m, neighbours } => (1, neighbours, radius_m),
+                    Bandwidth::Radius(radius_m) => (2, 0, radius_m),
+                    Bandwidth::Nearest(neighbours) => (3, neighbours, 0.0),
+                    Bandwidth::Progressive(radius_m) => (4, 0, radius_m),
+                };
+                put(out, [kind, number.into()])?;
+                // What is not known is written as NaN.
+                let chosen = [chosen.radius_m, chosen.neighbours].map(|x| x.unwrap_or(f64::NAN));
+                put_reals(out, [radius_m].into_iter().chain(chosen))?;
+            }
+        }
+        self.rendered.write(out)?;
+        self.sums.write(out)
+    }
+
+    /// Takes what was written in the place of what there is.
+    ///
+    /// # Errors
+    /// Those of the reader; what is of another picture.
+    pub(crate) fn read(&mut self, from: &mut dyn Read) -> io::Result<()> {
+        for settled in &mut self.bandwidths {
+            *settled = None;
+            if take_up_to(from, 1, "bandwidths")? == 1 {
+                let (kind, number) = (take(from)?, take_up_to(from, u32::MAX.into(), "neighbours")? as u32);
+                let [radius_m, chosen_m, neighbours] = [take_real(from)?, take_real(from)?, take_real(from)?];
+                let bandwidth = match kind {
+                    1 => Bandwidth::AtLeast { radius_m, neighbours: number },
+                    2 => Bandwidth::Radius(radius_m),
+                    3 => Bandwidth::Nearest(number),
+                    4 => Bandwidth::Progressive(radius_m),
+                    _ => return Err(damaged("a bandwidth that no picture has")),
+                };
+                let [radius_m, neighbours] = [chosen_m, neighbours].map(|x| Some(x).filter(|x| !x.is_nan()));
+                *settled = Some(Settled { bandwidth, chosen: Chosen { radius_m, neighbours } });
+            }
+        }
+        self.rendered = Rendered::read(from)?;
+        self.sums.read(from)
     }
 
     /// The film, and what the eye knows of its summary.

@@ -18,6 +18,31 @@ pub struct Photon<const C: usize> {
     pub weight: [f32; C],
 }
 
+impl<const C: usize> Photon<C> {
+    /// Bytes of a photon that is written.
+    pub const BYTES: usize = 24 + 4 * C;
+
+    /// Its bytes, little endian: cell, direction, primitive, tag, weights.
+    pub fn bytes(&self) -> impl Iterator<Item = u8> + use<C> {
+        let [x, y, z] = self.cell;
+        let words = [x, y, z, self.direction, self.primitive, self.tag].into_iter();
+        words.chain(self.weight.map(f32::to_bits)).flat_map(u32::to_le_bytes)
+    }
+
+    /// The photon of so many bytes; nonsense of another number of them.
+    pub fn from_bytes(bytes: &[u8]) -> Self {
+        let mut words = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_le_bytes(*w));
+        let mut next = || words.next().unwrap_or_default();
+        Self {
+            cell: [next(), next(), next()],
+            direction: next(),
+            primitive: next(),
+            tag: next(),
+            weight: std::array::from_fn(|_| f32::from_bits(next())),
+        }
+    }
+}
+
 /// It arrived on the side the outward normal points to.
 pub const FRONT: u32 = 1 << 16;
 /// It met a diffuse surface before this one; without the flag only specular ones, which makes a caustic. (Direct light is not

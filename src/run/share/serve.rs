@@ -5,7 +5,6 @@ use std::sync::atomic::Ordering;
 use rayon::ThreadPool;
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::run::replicates::Workers;
 use crate::run::together::{Together, Watched};
 use crate::transport::parallel::Traced;
 
@@ -34,6 +33,32 @@ impl<'a> Shared<'a> {
     /// All ranks, of which this one traces on these threads.
     pub fn new(post: &'a dyn Post, pool: &'a ThreadPool) -> Self {
         Self { post, pool, asking: Vec::new() }
+    }
+
+    /// Traces all replicates up to an index; false where an interrupt came before, as [`Together::trace`].
+    ///
+    /// # Errors
+    /// Those of [`Together::trace`], and what went wrong on another rank.
+    pub fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool> {
+        while run.done() < end {
+            let stage = run.stage(end);
+            let tasks = Tasks::new(run.open(stage), self.post.size());
+            // So few are traced here in less time than it takes to add them up.
+            let is_done = if tasks.photons() < FEWEST * u64::from(self.post.size()) {
+                self.pool.install(|| run.trace(stage, watched))?
+            } else {
+                self.stage(run, tasks, stage, watched)?
+            };
+            if !is_done {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Does a sum on the threads of this rank.
+    pub fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R {
+        self.pool.install(sum)
     }
 
     /// Traces a stage with all ranks; false where it was stopped.
@@ -140,29 +165,6 @@ impl<'a> Shared<'a> {
             }
         });
         failed.map_or(Ok(stage), Err)
-    }
-}
-
-impl Workers for Shared<'_> {
-    fn trace(&mut self, run: &mut Together<'_>, end: u64, watched: Watched<'_>) -> Result<bool> {
-        while run.done() < end {
-            let stage = run.stage(end);
-            let tasks = Tasks::new(run.open(stage), self.post.size());
-            // So few are traced here in less time than it takes to add them up.
-            let is_done = if tasks.photons() < FEWEST * u64::from(self.post.size()) {
-                self.pool.install(|| run.trace(stage, watched))?
-            } else {
-                self.stage(run, tasks, stage, watched)?
-            };
-            if !is_done {
-                return Ok(false);
-            }
-        }
-        Ok(true)
-    }
-
-    fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R {
-        self.pool.install(sum)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::files::scene_toml::parse_scene;
 use crate::run::goal::{ErrorGoal, ErrorOf, Goal};
 use crate::run::outcome::{Outcome, StoppedBy};
 use crate::run::plan::{Plan, Settings};
-use crate::run::replicates::{Course, Unkept, Workers};
+use crate::run::replicates::{Course, Keep, Unkept};
 use crate::run::together::{Together, Watched};
 use crate::scene::Scene;
 
@@ -86,6 +86,24 @@ events = "indirect"
 name = "all"
 axis = [0, 0, -1]
 "#;
+
+/// Nothing is kept of what all ranks trace.
+struct By<'a, 'b>(&'a mut Shared<'b>);
+
+impl Keep for By<'_, '_> {
+    fn keep(&mut self, _: &Course<'_>) {}
+    fn trace(
+        &mut self,
+        run: &mut Together<'_>,
+        end: u64,
+        watched: Watched<'_>,
+    ) -> crate::error::Result<bool> {
+        self.0.trace(run, end, watched)
+    }
+    fn install<R: Send>(&self, sum: impl FnOnce() -> R + Send) -> R {
+        self.0.install(sum)
+    }
+}
 
 /// Photons of each of eight replicates: no power of two, and enough to be shared by four ranks.
 const EACH: u64 = 40_000;
@@ -176,7 +194,7 @@ fn a_run_to_an_error_looks_where_one_process_does() {
     assert!(alone.photons < plan.photons() && alone.photons > 1 << 17, "{} photons", alone.photons);
     let shared = shared(&scene, &plan, (3, 1), |shared| {
         let course = Course::new(Together::new(&scene, &plan).unwrap());
-        course.run_by(shared, goal, watched, &mut Unkept).unwrap()
+        course.run(goal, watched, &mut By(shared)).unwrap()
     });
     assert_eq!(found(shared), found(alone));
 }
@@ -227,8 +245,7 @@ fn whoever_is_interrupted_stops_all() {
             };
             let watched = Watched { interrupt: &interrupts[0], progress: &progress };
             let course = Course::new(Together::new(scene, plan).unwrap());
-            let outcome =
-                course.run_by(&mut Shared::new(&zero, &pool(1)), Goal::default(), watched, &mut Unkept);
+            let outcome = course.run(Goal::default(), watched, &mut By(&mut Shared::new(&zero, &pool(1))));
             Message::End.send_to_all(&zero);
             outcome.unwrap()
         });

@@ -6,23 +6,24 @@
 //! A state is written whole beside the last one and renamed; the last one stays as `NAME.previous`. Whatever cuts that short,
 //! one of the two is whole.
 
+mod head;
+
 use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
-use crate::files::excerpt::cut;
 use crate::math::varint::damaged;
-use crate::run::goal::Looks;
+use crate::picture::part::AnyPhotons;
+use crate::run::Plan;
 use crate::run::replicates::Course;
 use crate::run::together::Together;
-use crate::run::{Algorithm, ErrorGoal, ErrorOf, Plan, Settings};
 use crate::scene::Scene;
-use crate::scene::receiver::{Cells, DividedBy};
+
+pub use head::Head;
 
 /// How a state begins.
 pub const MAGIC: &[u8; 8] = b"caustixS";
@@ -36,189 +37,11 @@ const PREVIOUS: &str = "previous";
 const MOST_HEAD: u32 = 1 << 24;
 const DIGEST: u64 = 32;
 
-/// What a run is of: what must be the same for a state to be gone on from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Head {
-    /// Version of the program: another one may trace other photons.
-    caustix: String,
-    /// The scene as it was named.
-    pub scene: String,
-    /// SHA-256 of what its results depend on.
-    scene_sha256: String,
-    /// The algorithm, by name.
-    algorithm: String,
-    seed: u64,
-    photons_per_replicate: u64,
-    /// Replicates.
-    pub replicates: u32,
-    /// The indices of every replicate that this is of.
-    part: [u64; 2],
-    /// Which part of how many, counted from 1, where it is one.
-    pub part_of: Option<[u32; 2]>,
-    /// The index up to which all replicates are traced.
-    done: u64,
-    /// Cells along u and v of the receivers that a pilot divided.
-    cells: Vec<Option<[u32; 2]>>,
-    /// Units of a photon in far fields.
-    units_of_a_photon: u64,
-    /// The error to be reached, as a fraction, and what it is of.
-    goal: Option<(f64, String)>,
-    looks: Looks,
-    trace_s: f64,
-}
-
-impl Head {
-    /// Of a run where it is.
-    pub fn of(course: &Course<'_>, goal: Option<ErrorGoal>, part_of: Option<[u32; 2]>) -> Self {
-        let (run, plan) = (&course.run, course.run.plan());
-        let chosen =
-            run.scene().receivers.iter().map(|receiver| match (receiver.divided_by, receiver.cells) {
-                (DividedBy::Pilot, Cells::Grid { nu, nv }) => Some([nu, nv]),
-                _ => None,
-            });
-        let part = run.part();
-        Self {
-            caustix: env!("CARGO_PKG_VERSION").to_owned(),
-            scene: run.scene().identity.name.clone(),
-            scene_sha256: run.scene().identity.results.clone(),
-            algorithm: plan.algorithm().name(),
-            seed: plan.seed(),
-            photons_per_replicate: plan.photons_per_replicate(),
-            replicates: plan.replicates(),
-            part: [part.start, part.end],
-            part_of,
-            done: run.done(),
-            cells: chosen.collect(),
-            units_of_a_photon: run.units_of_a_photon(),
-            goal: goal.map(|goal| (goal.relative(), goal.of().name().to_owned())),
-            looks: course.looks.clone(),
-            trace_s: course.trace_s,
-        }
-    }
-
-    /// The settings of its run.
-    ///
-    /// # Errors
-    /// An algorithm that this version does not have.
-    pub fn settings(&self) -> Result<Settings> {
-        let photons = self.photons_per_replicate.checked_mul(self.replicates.into());
-        Ok(Settings {
-            photons: Some(photons.unwrap_or(u64::MAX)),
-            replicates: Some(self.replicates),
-            seed: self.seed,
-            algorithm: Algorithm::parse(&self.algorithm)?,
-        })
-    }
-
-    /// The error that its run was to reach.
-    pub fn goal(&self) -> Option<ErrorGoal> {
-        let (relative, of) = self.goal.as_ref()?;
-        ErrorGoal::new(*relative, ErrorOf::from_name(of)?).ok()
-    }
-
-    /// Photons of each replicate, and how many of this part are traced.
-    pub fn photons(&self) -> (u64, u64) {
-        (self.photons_per_replicate, self.done.saturating_sub(self.part[0]))
-    }
-
-    /// Whether all of its photons are traced.
-    pub fn is_done(&self) -> bool {
-        self.done == self.part[1]
-    }
-
-    /// Time of tracing, s.
-    pub fn trace_s(&self) -> f64 {
-        self.trace_s
-    }
-
-    /// That another state is of a part of the same run.
-    ///
-    /// # Errors
-    /// What differs, by name.
-    pub fn check_same_run(&self, other: &Self) -> Result<()> {
-        let of = |head: &Self| head.part_of.map_or(1, |[_, of]| of);
-        let differs = |what: &str, [found, required]: [&dyn std::fmt::Display; 2]| {
-            let of_other = format!("a state of another run: {what} {found}");
-            Err(Diagnostic::new(Kind::Range, of_other, format!("{what} {required}, as of the first")))
-        };
-        if other.caustix != self.caustix {
-            return differs("by caustix", [&cut(&other.caustix), &cut(&self.caustix)]);
-        }
-        if other.scene_sha256 != self.scene_sha256 || other.cells != self.cells {
-            return differs(
-                "of the scene",
-                [&cut(&other.scene), &format!("{} as it was there", cut(&self.scene))],
-            );
-        }
-        if other.algorithm != self.algorithm {
-            return differs("by", [&cut(&other.algorithm), &cut(&self.algorithm)]);
-        }
-        for (what, found, required) in [
-            ("with seed", other.seed, self.seed),
-            ("of replicates of photons", other.photons_per_replicate, self.photons_per_replicate),
-            ("of replicates", other.replicates.into(), self.replicates.into()),
-            ("of parts", of(other).into(), of(self).into()),
-        ] {
-            if found != required {
-                return differs(what, [&found, &required]);
-            }
-        }
-        Ok(())
-    }
-
-    /// Divides the receivers of a scene as the run's pilot did.
-    pub fn divide(&self, scene: &mut Scene) {
-        for (receiver, cells) in scene.receivers.iter_mut().zip(&self.cells) {
-            if let (DividedBy::Default, Some(cells)) = (receiver.divided_by, cells) {
-                *receiver = receiver.divided(*cells, DividedBy::Pilot);
-            }
-        }
-    }
-
-    /// That it is of a scene and a plan: of the same photons, of which there may be more now, in more replicates.
-    ///
-    /// # Errors
-    /// What differs, by name.
-    pub fn check(&self, scene: &Scene, plan: &Plan) -> Result<()> {
-        let version = env!("CARGO_PKG_VERSION");
-        let is_scene = self.scene_sha256 == scene.identity.results;
-        let is_divided = self.cells.len() == scene.receivers.len();
-        let differs = |found: String, required: String| Err(Diagnostic::new(Kind::Range, found, required));
-        if self.caustix != version {
-            let found = format!("the state of a run by caustix {}", cut(&self.caustix));
-            return differs(
-                found,
-                format!("one by caustix {version}: another version may trace other photons"),
-            );
-        }
-        if !(is_scene && is_divided) {
-            let found =
-                format!("the state of a run of another scene, or of {} as it was before", cut(&self.scene));
-            return differs(found, format!("one of {} as it is now, files included", scene.identity.name));
-        }
-        let name = plan.algorithm().name();
-        if (&self.algorithm, self.seed) != (&name, plan.seed()) {
-            let found = format!("the state of a run by {}, seed {}", cut(&self.algorithm), self.seed);
-            return differs(found, format!("one by {name}, seed {}", plan.seed()));
-        }
-        let [asked, there] = [plan.photons_per_replicate(), self.done];
-        if there > asked || self.replicates > plan.replicates() {
-            let found = format!("the state of {} replicates of {there} photons", self.replicates);
-            let required = format!(
-                "at most the {} of {asked} that are asked for: more can be added, none taken away",
-                plan.replicates()
-            );
-            return differs(found, required);
-        }
-        Ok(())
-    }
-}
-
 /// Writes a state; the last one of this name stays beside it.
 ///
 /// # Errors
 /// A file that cannot be written; then the last one stands where it was.
-pub fn write(path: &Path, head: &Head, run: &Together<'_>) -> Result<()> {
+pub fn write(path: &Path, head: &Head, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     // Made whole under a name of its own first, so that a full disk costs neither of the two that are there.
     let newest = beside(path, "new");
     write_atomically(&newest, |file| {
@@ -228,7 +51,7 @@ pub fn write(path: &Path, head: &Head, run: &Together<'_>) -> Result<()> {
         out.write_all(&VERSION.to_le_bytes())?;
         out.write_all(&(json.len() as u32).to_le_bytes())?;
         out.write_all(&json)?;
-        run.write(&mut out)?;
+        body(&mut out)?;
         let Hashing { inner, hash } = out;
         inner.write_all(hash.finalize().as_slice())
     })?;
@@ -242,6 +65,13 @@ pub fn write(path: &Path, head: &Head, run: &Together<'_>) -> Result<()> {
         renamed(path, &beside(path, PREVIOUS))?;
     }
     renamed(&newest, path)
+}
+
+/// Removes a state and the one before it: of a run that has ended and cannot be added to, and of what it replaced.
+pub fn remove(path: &Path) {
+    // What cannot be removed is refused by whoever would go on from it.
+    let all = [beside(path, "new"), path.to_path_buf(), beside(path, PREVIOUS)];
+    all.iter().for_each(|path| _ = fs::remove_file(path));
 }
 
 fn beside(path: &Path, ending: &str) -> PathBuf {
@@ -348,22 +178,33 @@ impl Saved {
         &self.path
     }
 
-    /// Adds what it holds to a run, which goes on from there.
+    /// What stands after its head.
+    ///
+    /// # Errors
+    /// A file that cannot be read any more.
+    pub fn body(&self) -> io::Result<io::Take<BufReader<File>>> {
+        let mut file = BufReader::new(File::open(&self.path)?);
+        file.seek(io::SeekFrom::Start(self.body))?;
+        Ok(file.take(self.end - self.body))
+    }
+
+    /// Adds what it holds to a run, which goes on from there; of a part of a picture its photons, too.
     ///
     /// # Errors
     /// A file that cannot be read any more; content of another run.
-    pub fn add_to(&self, run: &mut Together<'_>) -> Result<()> {
+    pub fn add_to(&self, run: &mut Together<'_>, photons: Option<&mut AnyPhotons>) -> Result<()> {
         if !run.scene().far_fields.is_empty() && self.head.units_of_a_photon != run.units_of_a_photon() {
             let found = format!("far fields in units of 1 / {} of a photon", self.head.units_of_a_photon);
             let required =
                 format!("1 / {}: a run of as many photons from its start", run.units_of_a_photon());
             return Err(Diagnostic::new(Kind::Range, found, required).in_file(&self.path));
         }
-        let mut add = || -> io::Result<()> {
-            let mut file = BufReader::new(File::open(&self.path)?);
-            file.seek(io::SeekFrom::Start(self.body))?;
-            let mut from = file.take(self.end - self.body);
+        let add = || -> io::Result<()> {
+            let mut from = self.body()?;
             run.add_from(&mut from, self.head.replicates)?;
+            if let Some(photons) = photons {
+                photons.add_from(run.scene(), &mut from)?;
+            }
             match from.limit() {
                 0 => Ok(()),
                 more => Err(damaged(&format!("{more} bytes too many"))),
@@ -380,17 +221,22 @@ impl Saved {
     ///
     /// # Errors
     /// Those of [`Head::check`], [`Together::of_part`] and [`Self::add_to`].
-    pub fn resumed<'s>(&self, scene: &'s Scene, plan: &Plan) -> Result<Course<'s>> {
+    pub fn resumed<'s>(
+        &self,
+        scene: &'s Scene,
+        plan: &Plan,
+        photons: Option<&mut AnyPhotons>,
+    ) -> Result<Course<'s>> {
         self.head.check(scene, plan).map_err(|e| e.in_file(&self.path))?;
         let [start, end] = self.head.part;
         let part = if self.head.part_of.is_some() { start..end } else { 0..plan.photons_per_replicate() };
         let mut course = Course::new(Together::of_part(scene, plan, part)?);
-        self.add_to(&mut course.run)?;
+        self.add_to(&mut course.run, photons)?;
         // Looks at fewer replicates say nothing of more.
         if self.head.replicates == plan.replicates() {
             course.looks = self.head.looks.clone();
         }
-        course.trace_s = self.head.trace_s;
+        course.trace_s = self.head.trace_s();
         Ok(course)
     }
 }
