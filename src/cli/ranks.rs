@@ -250,7 +250,8 @@ mod tests {
         };
         let ours = read(|_| {});
         assert_eq!(ours.check(3, &read(|_| {})), Ok(()));
-        let changes: [(fn(&mut Read), &str); 4] = [
+        type Change = fn(&mut Read);
+        let changes: [(Change, &str); 4] = [
             (|read| read.caustix = "2".into(), "caustix 2 on rank 3"),
             (|read| read.scene = "z".into(), "another scene file on rank 3"),
             (|read| read.files[1].1 = "z".into(), "another glass.obj on rank 3"),

@@ -65,14 +65,25 @@ impl Iterator for Tasks {
 
 #[cfg(test)]
 mod tests {
+    use std::iter::once;
+
     use super::*;
 
     #[test]
     fn every_index_is_in_one_task_and_tasks_become_short() {
         for (open, ranks) in [
             (vec![0..1 << 20, 0..1 << 20], 2),
-            (vec![5..70_000, 1 << 18..1 << 19, 9..9, 12..7, (1 << 40) + 3..(1 << 40) + 200_001], 3),
-            (vec![0..1], 1024),
+            (
+                vec![
+                    5..70_000,
+                    1 << 18..1 << 19,
+                    9..9,
+                    Range { start: 12, end: 7 },
+                    (1 << 40) + 3..(1 << 40) + 200_001,
+                ],
+                3,
+            ),
+            (once(0..1).collect(), 1024),
             (vec![], 2),
         ] {
             let photons: u64 = open.iter().map(|r: &Range<u64>| r.end.saturating_sub(r.start)).sum();
@@ -98,7 +109,7 @@ mod tests {
                 assert!(whole.clone().count() > all.len() / 2);
             }
         }
-        let mut left = Tasks::new(vec![0..1 << 20], 2);
+        let mut left = Tasks::new(once(0..1 << 20).collect(), 2);
         left.clear();
         assert_eq!((left.next(), left.photons()), (None, 0));
     }

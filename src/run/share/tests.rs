@@ -105,6 +105,12 @@ impl Keep for By<'_, '_> {
     }
 }
 
+/// The same with few counters, so that errors are looked at early.
+fn small_scene() -> Scene {
+    let of_receivers = SCENE.split("[[far_field]]").next().unwrap();
+    parse_scene(&of_receivers.replace("spot = true\n", ""), ".").unwrap()
+}
+
 /// Photons of each of eight replicates: no power of two, and enough to be shared by four ranks.
 const EACH: u64 = 40_000;
 
@@ -156,12 +162,14 @@ fn found(mut outcome: Outcome) -> String {
     format!("{outcome:?}")
 }
 
-const NEVER: AtomicBool = AtomicBool::new(false);
+fn never() -> AtomicBool {
+    AtomicBool::new(false)
+}
 
 #[test]
 fn any_number_of_ranks_and_threads_counts_the_same() {
     let (scene, plan) = (scene(), plan(EACH, 8));
-    let interrupt = NEVER;
+    let interrupt = never();
     let mut alone = Together::new(&scene, &plan).unwrap();
     assert!(alone.trace(EACH, Watched { interrupt: &interrupt, progress: &|_| {} }).unwrap());
     for (size, threads) in [(1, 2), (2, 1), (3, 2), (4, 1), (2, 7)] {
@@ -185,13 +193,13 @@ fn any_number_of_ranks_and_threads_counts_the_same() {
 
 #[test]
 fn a_run_to_an_error_looks_where_one_process_does() {
-    let (scene, plan) = (scene(), plan(1 << 17, 8));
-    let interrupt = NEVER;
+    let (scene, plan) = (small_scene(), plan(1 << 20, 8));
+    let interrupt = never();
     let watched = Watched { interrupt: &interrupt, progress: &|_| {} };
     let goal = Goal { error: Some(ErrorGoal::new(0.02, ErrorOf::Cells).unwrap()), until: None };
     let alone = Course::new(Together::new(&scene, &plan).unwrap()).run(goal, watched, &mut Unkept).unwrap();
     assert_eq!(alone.stopped_by, StoppedBy::Error);
-    assert!(alone.photons < plan.photons() && alone.photons > 1 << 17, "{} photons", alone.photons);
+    assert!(alone.photons < plan.photons() && alone.photons > 1 << 19, "{} photons", alone.photons);
     let shared = shared(&scene, &plan, (3, 1), |shared| {
         let course = Course::new(Together::new(&scene, &plan).unwrap());
         course.run(goal, watched, &mut By(shared)).unwrap()
@@ -203,7 +211,7 @@ fn a_run_to_an_error_looks_where_one_process_does() {
 fn a_state_is_gone_on_from_by_other_ranks_and_added_replicates_catch_up() {
     let scene = scene();
     let (four, eight) = (plan(EACH, 4), plan(EACH, 8));
-    let interrupt = NEVER;
+    let interrupt = never();
     let watched = Watched { interrupt: &interrupt, progress: &|_| {} };
     let half = shared(&scene, &four, (2, 2), |shared| {
         let mut run = Together::new(&scene, &four).unwrap();
@@ -226,11 +234,11 @@ fn a_state_is_gone_on_from_by_other_ranks_and_added_replicates_catch_up() {
 
 #[test]
 fn whoever_is_interrupted_stops_all() {
-    let (scene, plan) = (scene(), plan(1 << 24, 8));
+    let (scene, plan) = (small_scene(), plan(1 << 24, 8));
     for interrupted in [0, 1] {
         let mut wires = Wire::all(2).into_iter();
         let (zero, one) = (wires.next().unwrap(), wires.next().unwrap());
-        let interrupts = [NEVER, NEVER];
+        let interrupts = [never(), never()];
         let photons = AtomicU64::new(0);
         let outcome = std::thread::scope(|scope| {
             let (scene, plan, interrupts) = (&scene, &plan, &interrupts);
@@ -252,27 +260,27 @@ fn whoever_is_interrupted_stops_all() {
         assert_eq!(outcome.stopped_by, StoppedBy::Interrupt, "rank {interrupted}");
         // Whole nets of every replicate, and of what was traced at least a half.
         let each = outcome.photons / 8;
-        assert!(each.is_power_of_two() && each >= 1 << 15 && each < 1 << 20, "{each}");
+        assert!(each.is_power_of_two() && (1 << 15..1 << 19).contains(&each), "{each}");
         assert!(outcome.ledger.is_balanced() && outcome.ledger.total_emitted() == 8 * each);
         assert!(interrupts.iter().all(|interrupt| interrupt.load(Ordering::Relaxed)));
     }
 }
 
-/// What rank 0 says of a rank 1 that answers its first task so.
-fn with_a_rank_that(answers: fn(&Wire)) -> String {
+/// What rank 0 says of a rank 1 that answers so.
+fn with_a_rank_that(answers: fn(&Wire, Message)) -> String {
     let (scene, plan) = (scene(), plan(EACH, 8));
     let mut wires = Wire::all(2).into_iter();
     let (zero, one) = (wires.next().unwrap(), wires.next().unwrap());
-    let interrupt = NEVER;
+    let interrupt = never();
     let watched = Watched { interrupt: &interrupt, progress: &|_| {} };
     std::thread::scope(|scope| {
         scope.spawn(move || {
             Message::Ask.send(&one, 0);
             loop {
                 match Message::poll(&one).unwrap() {
-                    Some((_, Message::Task(_))) => answers(&one),
                     Some((_, Message::End)) => break,
-                    _ => std::thread::sleep(SHORTEST),
+                    Some((_, message)) => answers(&one, message),
+                    None => std::thread::sleep(SHORTEST),
                 }
             }
         });
@@ -286,18 +294,23 @@ fn with_a_rank_that(answers: fn(&Wire)) -> String {
 
 #[test]
 fn what_goes_wrong_on_a_rank_is_said_and_ends_the_run() {
-    let failed = |one: &Wire| {
-        Message::Failed { found: "a leak".into(), required: "none".into() }.send(one, 0);
-    };
-    assert_eq!(with_a_rank_that(failed), "found a leak (rank 1); required: none");
-    let other_sums = |one: &Wire| {
-        Message::Sums(vec![vec![1]; 3]).send(one, 0);
-        Message::Done { photons: 1, complete: true }.send(one, 0);
-        Message::Sums(vec![vec![1]; 3]).send(one, 0);
-    };
-    let error = with_a_rank_that(other_sums);
+    let error = with_a_rank_that(|one, message| {
+        if let Message::Task(_) = message {
+            Message::Failed { found: "a leak".into(), required: "none".into() }.send(one, 0);
+        }
+    });
+    assert_eq!(error, "found a leak (rank 1); required: none");
+    let error = with_a_rank_that(|one, message| match message {
+        Message::Task(_) => Message::Done { photons: 1, complete: true }.send(one, 0),
+        Message::AddUp => Message::Sums(vec![vec![1]; 3]).send(one, 0),
+        _ => {}
+    });
     assert!(error.contains("sums of rank 1 that hold 3 replicates instead of 8"), "{error}");
-    let error = with_a_rank_that(|one| one.send(0, b"\x00\x05"));
+    let error = with_a_rank_that(|one, message| {
+        if let Message::Task(_) = message {
+            one.send(0, b"\x00\x05");
+        }
+    });
     assert!(error.contains("a message from rank 1 that holds"), "{error}");
 }
 
