@@ -315,6 +315,23 @@ fn what_goes_wrong_on_a_rank_is_said_and_ends_the_run() {
 }
 
 #[test]
+fn a_panic_in_a_task_ends_its_rank_instead_of_leaving_it_waiting() {
+    let (scene, plan) = (scene(), plan(EACH, 8));
+    let mut wires = Wire::all(2).into_iter();
+    let (zero, one) = (wires.next().unwrap(), wires.next().unwrap());
+    std::thread::scope(|scope| {
+        let (scene, plan) = (&scene, &plan);
+        let rank = scope.spawn(move || {
+            let mut run = Together::new(scene, plan).unwrap();
+            work(&one, &pool(2), &mut run, &never())
+        });
+        // A replicate that no run has.
+        Message::Task(tasks::Task { replicate: 99, indices: 0..10 }).send(&zero, 1);
+        assert!(rank.join().is_err());
+    });
+}
+
+#[test]
 fn every_rank_gives_its_sums_once_on_the_way_to_rank_0() {
     for size in [1, 2, 3, 4, 5, 8, 13, 1024] {
         let mut given = vec![0; size as usize];
