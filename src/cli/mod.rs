@@ -3,6 +3,7 @@
 mod args;
 mod deadline;
 mod far_field;
+mod kept;
 mod misuse;
 mod progress;
 mod results;
@@ -12,6 +13,7 @@ mod photometry;
 mod check;
 mod compare;
 mod sample;
+mod sweep;
 mod shell;
 mod bsdf;
 
@@ -71,6 +73,8 @@ enum Sub {
     Check(CheckArgs),
     /// Measure the error of every algorithm variant against a reference (without SCENE: the built-in scene).
     Compare(compare::CompareArgs),
+    /// Trace a grid of scenes by common random numbers: what a value of the scene changes, with the error of every difference.
+    Sweep(sweep::SweepArgs),
     /// Sample directions of a photometric file, and judge them against its candela.
     Sample(SampleArgs),
     /// Say what a scattering table (BSDF) holds: kind, angles, albedo against incidence, reciprocity.
@@ -93,6 +97,7 @@ pub fn main() -> ExitCode {
     let scene = match &parsed {
         Ok(Sub::Render(RenderArgs { scene, .. }) | Sub::Check(CheckArgs { scene, .. })) => scene.clone(),
         Ok(Sub::Compare(compare::CompareArgs { scene, .. })) => scene.clone(),
+        Ok(Sub::Sweep(sweep::SweepArgs { scene, .. })) => scene.clone(),
         _ => None,
     };
     let done = match parsed {
@@ -113,6 +118,7 @@ pub fn main() -> ExitCode {
         Ok(Sub::Photometry(args)) => photometry::run(&args),
         Ok(Sub::Check(args)) => check::run(&args),
         Ok(Sub::Compare(args)) => compare::run(&args),
+        Ok(Sub::Sweep(args)) => sweep::run(&args),
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
         Ok(Sub::Completions(args)) => shell::completions(&args),
