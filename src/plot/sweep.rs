@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::error::words::{NAMED, names};
 use crate::lab::sweep::results::Sweep;
 use crate::report::colour::Colour;
 use crate::report::colour::scale::linear_ticks;
@@ -39,8 +40,9 @@ struct Panel<'a> {
 
 /// The plot.
 pub fn drawing(sweep: &Sweep) -> Drawing {
-    let panels = sweep.shown.len().min(MOST_PANELS);
-    let columns = if panels > 1 { 2 } else { 1 };
+    let mut panels: Vec<usize> = (0..sweep.shown.len()).filter(|shown| sweep.is_known(*shown)).collect();
+    panels.truncate(MOST_PANELS);
+    let columns = if panels.len() > 1 { 2 } else { 1 };
     let mut shapes = Vec::new();
     let mut y = MARGIN + TITLE_SIZE;
     let style = TextStyle::new(TITLE_SIZE, Colour::grey(20)).weighing(1.25);
@@ -51,16 +53,16 @@ pub fn drawing(sweep: &Sweep) -> Drawing {
     legend(&mut shapes, sweep, &mut y);
     let width = WIDTH / columns as f64 - LABELS - 2.0 * MARGIN;
     let row_height = PANEL_HEIGHT + 4.0 * LINE_HEIGHT;
-    for shown in 0..panels {
-        let x = MARGIN + LABELS + (shown % columns) as f64 * (WIDTH / columns as f64);
-        let top = y + (shown / columns) as f64 * row_height + LINE_HEIGHT + 8.0;
+    for (i, &shown) in panels.iter().enumerate() {
+        let x = MARGIN + LABELS + (i % columns) as f64 * (WIDTH / columns as f64);
+        let top = y + (i / columns) as f64 * row_height + LINE_HEIGHT + 8.0;
         let middle = [x + 0.5 * width, top - 9.0];
         let style = TextStyle::new(TEXT_SIZE, ink()).anchored(Anchor::Middle).weighing(1.25);
         shapes.push(text(middle, &sweep.shown[shown], style));
         let [xs, ys] = [places(sweep), values(sweep, shown)].map(padded);
         Panel { sweep, shown, area: [x, top, width, PANEL_HEIGHT], x: xs, y: ys }.draw(&mut shapes);
     }
-    y += panels.div_ceil(columns) as f64 * row_height;
+    y += panels.len().div_ceil(columns) as f64 * row_height + LINE_HEIGHT;
     for line in font::wrapped(&caption(sweep), TICK_SIZE, WIDTH - 2.0 * MARGIN) {
         shapes.push(text([MARGIN, y], &line, TextStyle::new(TICK_SIZE, ink())));
         y += LINE_HEIGHT - 2.0;
@@ -165,10 +167,6 @@ impl Panel<'_> {
         shapes.push(text(below, &key, style.anchored(Anchor::Middle)));
         let frame = [[left, top], [right, top], [right, foot], [left, foot], [left, top]];
         shapes.push(polyline(frame, hairline(130)));
-        if values(self.sweep, self.shown).is_empty() {
-            let middle = [left + 0.5 * width, top + 0.5 * height];
-            shapes.push(text(middle, "not given: too noisy, or dark", style.anchored(Anchor::Middle)));
-        }
     }
 
     /// Marks along the first key.
@@ -214,19 +212,26 @@ fn legend(shapes: &mut Vec<Shape>, sweep: &Sweep, y: &mut f64) {
         shapes.push(polyline([[x, *y - 5.0], [x + sample, *y - 5.0]], Pen::solid(1.6, colour(line))));
         shapes.extend(marker(line, [x + 0.5 * sample, *y - 5.0], false));
         shapes.push(text([x + sample + 8.0, *y], &name, TextStyle::new(TEXT_SIZE, ink())));
-        x += entry + 26.0;
+        // Other fonts than ours are wider.
+        x += 1.15 * entry + 26.0;
     }
     *y += 6.0;
 }
 
 /// What bars mean, and what is left out.
 fn caption(sweep: &Sweep) -> String {
-    let mut caption = "Bars: one standard error of each value. Differences between neighbours are known better: see sweep.md.".to_owned();
+    let mut caption =
+        "Bars: one standard error of each value. Errors of differences are in sweep.md.".to_owned();
     if lines(sweep) > MOST_LINES {
         caption += &format!(" The first {MOST_LINES} of {} combinations of the other keys.", lines(sweep));
     }
     if sweep.shown.len() > MOST_PANELS {
         caption += &format!(" The first {MOST_PANELS} of {} figures.", sweep.shown.len());
+    }
+    let unknown = (0..sweep.shown.len()).filter(|shown| !sweep.is_known(*shown));
+    let unknown = names(unknown.map(|shown| &sweep.shown[shown]), NAMED);
+    if !unknown.is_empty() {
+        caption += &format!(" Not given at any point: {unknown}.");
     }
     caption
 }

@@ -140,8 +140,11 @@ fn chosen(of: &[String], scene: &Scene) -> Result<Vec<String>> {
     let mut chosen: Vec<String> = Vec::new();
     for name in of.iter().map(|name| name.trim()) {
         if !known.contains(&name) {
-            let error =
-                Diagnostic::new(Kind::Unknown, format!("--of {name}"), format!("of: {}", known.join(", ")));
+            let error = Diagnostic::new(
+                Kind::Unknown,
+                format!("--of {name}"),
+                format!("one of: {}", known.join(", ")),
+            );
             return Err(suggest::hinted(error, name, &known, '`'));
         }
         if chosen.iter().any(|known| known == name) {

@@ -160,7 +160,11 @@ impl Walk<'_> {
                 let item = |i| if i == *index { self.value } else { other };
                 format!("[{}, {}, {}]", item(0), item(1), item(2))
             }
-            ([Step::Index(_)], _) => return unknown("list"),
+            ([step @ Step::Index(_)], Some(_)) => {
+                let found = format!("{}.{key}{step}, of which there are 3", self.path(at));
+                return Err(Diagnostic::new(Kind::Range, found, "[0] to [2]"));
+            }
+            ([Step::Index(_)], None) => return unknown("list"),
             _ => return unknown("table"),
         };
         let Range { start, end } = here.span();

@@ -59,6 +59,7 @@ fn a_path_that_leads_nowhere_is_told_with_what_was_meant() {
         ("emitter.lamp.position.z", "position.z, where emitter.lamp.position is a list", "position[0]"),
         ("emitter.lamp.positon[2]", "no list `positon` in emitter.lamp", "did you mean `position`?"),
         ("emitter.lamp.flux lm", "no key `flux lm` in emitter.lamp", "one of: "),
+        ("surface.a b.translate[3]", "translate[3], of which there are 3", "[0] to [2]"),
         ("emitter.lamp.deep.er", "no table `deep`", "one of: "),
         ("material.glas.ior", "no material `glas` in material", "did you mean `glass`?"),
         ("material.glass.ior[0]", "where material.glass.ior is no list", "material.glass.ior alone"),

@@ -42,6 +42,9 @@ pub struct PointFigures {
     pub warnings: Vec<(String, String)>,
 }
 
+/// Relative standard error up to which the brightest cell is given where others are too noisy for a minimum.
+const WIDEST_PEAK: f64 = 0.1;
+
 /// What can be taken of a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum What {
@@ -157,7 +160,10 @@ fn figure(scene: &Scene, outcome: &Outcome, name: String, what: What) -> Figure 
         }
         What::Min(i) => of_cells(extremes(i).map(|e| lux(e.minimum))),
         What::Max(i) => {
-            let peak = || outcome.peak_lx(i, scene.receivers[i].areas_m2());
+            let peak = || {
+                let peak = outcome.peak_lx(i, scene.receivers[i].areas_m2());
+                peak.filter(|peak| peak.standard_error <= WIDEST_PEAK * peak.value)
+            };
             of_cells(extremes(i).map(|e| lux(e.maximum)).or_else(peak))
         }
         What::U0(i) => of_cells(extremes(i).map(|e| e.u0)),

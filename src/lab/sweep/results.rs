@@ -55,6 +55,11 @@ impl Sweep {
         Difference::new(self.figure(point, shown)?, self.figure(before, shown)?)
     }
 
+    /// Whether a shown figure is known anywhere.
+    pub fn is_known(&self, shown: usize) -> bool {
+        (0..self.points.len()).any(|point| self.figure(point, shown).is_some_and(|f| f.value.is_some()))
+    }
+
     /// Ratios of all differences of a shown figure along an axis.
     pub fn ratios(&self, shown: usize, axis: usize) -> Option<Ratios> {
         let ratio = |point| self.difference(point, shown, axis)?.ratio();

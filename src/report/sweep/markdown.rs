@@ -9,17 +9,25 @@ use super::unit;
 /// Most rows of a table: beyond them sweep.csv is for programs.
 const MOST_ROWS: usize = 400;
 
-const DIFFERENCES: &str = "\nDifferences are to the point one step less along the key, other keys being the same. Both scenes were traced by \
-                           the same points (seed, replicates, photons), so what they have in common cancels, noise included; the error is \
-                           that of the replicates' differences. The ratio is the error that two independent runs would give to their \
-                           difference, sqrt(a^2 + b^2), over this one. Extremes (`min`, `max`, `u0`) have no paired error. All digits are in \
-                           sweep.csv.\n";
+const WHY: &str = "The cells are too noisy for an extreme, or nothing arrives; `caustix render` says how many photons would do.";
+
+const DIFFERENCES: &str = "
+Differences are to the point one step less along the key, other keys being the same. Both scenes were traced by the same points of
+the sequence (seed, replicates, photons), so what they have in common cancels, noise included; the error is that of the replicates'
+differences. The ratio is the error that two independent runs would give to their difference, sqrt(a^2 + b^2), over this one; each
+of R replicates' errors is itself known to one part in sqrt(2 (R - 1)), 27 % for eight. Extremes (`min`, `max`, `u0`) and evaluation
+grids have no paired error. All digits are in sweep.csv.
+";
 
 /// The sweep as a Markdown document.
 pub fn markdown(sweep: &Sweep) -> String {
     let mut out = opening(sweep);
-    for shown in 0..sweep.shown.len() {
-        out += &figure(sweep, shown);
+    let (known, unknown): (Vec<usize>, Vec<usize>) =
+        (0..sweep.shown.len()).partition(|shown| sweep.is_known(*shown));
+    known.into_iter().for_each(|shown| out += &figure(sweep, shown));
+    if !unknown.is_empty() {
+        let told = names(unknown.into_iter().map(|shown| printable(&sweep.shown[shown])), usize::MAX);
+        out += &format!("\nNot given at any point: {told}. {WHY}\n");
     }
     if !sweep.stepped_axes().is_empty() {
         out += &ratios(sweep);
@@ -67,9 +75,11 @@ fn figure(sweep: &Sweep, shown: usize) -> String {
     let (axes, stepped) = (sweep.grid.axes(), sweep.stepped_axes());
     let mut head: Vec<String> = axes.iter().map(|axis| code(&axis.key)).collect();
     head.push(printable(name));
+    let is_paired = |axis: usize| sweep.ratios(shown, axis).is_some();
     for axis in &stepped {
         let along = if axes.len() > 1 { format!(" along {}", code(&axes[*axis].key)) } else { String::new() };
-        head.extend([format!("difference{along}"), "ratio".to_owned()]);
+        head.push(format!("difference{along}"));
+        head.extend(is_paired(*axis).then(|| "ratio".to_owned()));
     }
     let mut out = format!("\n## {}\n\n", printable(name));
     out += &piped(&head);
@@ -84,7 +94,9 @@ fn figure(sweep: &Sweep, shown: usize) -> String {
             }),
         );
         for axis in &stepped {
-            cells.extend(of_difference(sweep.difference(point, shown, *axis), unit(name)));
+            let [difference, ratio] = of_difference(sweep.difference(point, shown, *axis), unit(name));
+            cells.push(difference);
+            cells.extend(is_paired(*axis).then_some(ratio));
         }
         out += &piped(&cells);
     }
@@ -95,7 +107,7 @@ fn figure(sweep: &Sweep, shown: usize) -> String {
         );
     }
     if finished.iter().any(|point| sweep.figure(*point, shown).is_none_or(|f| f.value.is_none())) {
-        out += "\nA figure is not given where its cells are too noisy for it, or nothing arrives; `caustix render` says why.\n";
+        out += &format!("\n`-`: {WHY}\n");
     }
     out
 }
