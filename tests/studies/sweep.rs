@@ -39,7 +39,7 @@ fn values_and_differences_are_those_of_the_solid_angle() {
     let grid =
         Grid::parse(&["emitter.lamp.position[2]=0.5:2:0.5".into(), "emitter.lamp.flux_lm=100,200".into()])
             .unwrap();
-    let plan = plan(1 << 17, 32, 7, Variant::QmcInverseReuse);
+    let plan = plan(1 << 17, 32, 7, Variant::QmcInverse);
     let of = |at| {
         let values: Vec<(&str, &str)> =
             grid.values(at).map(|(key, value)| (key, value.toml.as_str())).collect();
@@ -92,7 +92,7 @@ fn values_and_differences_are_those_of_the_solid_angle() {
 fn the_paired_error_is_the_scatter_over_seeds() {
     const SEEDS: u64 = 240;
     let truth = flux_lm(1.05) - flux_lm(1.0);
-    for (variant, independent_is_larger) in [(Variant::Mc, 4.0), (Variant::QmcInverseReuse, 1.0)] {
+    for (variant, independent_is_larger) in [(Variant::Mc, 4.0), (Variant::QmcInverse, 1.0)] {
         let (mut scatter, mut paired, mut independent) = (0.0, 0.0, 0.0);
         for seed in 0..SEEDS {
             let plan = plan(1 << 13, 8, seed, variant);
@@ -131,7 +131,7 @@ fn differences_of_neighbours_have_a_fifth_of_the_error_or_less() {
     ];
     for (name, key, [here, step, tenth], figure) in cases {
         let text = std::fs::read_to_string(scenes.join(format!("{name}.toml"))).unwrap();
-        for (variant, there) in [(Variant::Mc, step), (Variant::QmcInverseReuse, tenth)] {
+        for (variant, there) in [(Variant::Mc, step), (Variant::QmcInverse, tenth)] {
             let plan = plan(1 << 16, 32, 1, variant);
             let of = |value: &str| -> Figure {
                 point(&text, &scenes, &[(key, value)], &plan).figure(figure).unwrap().clone()

@@ -46,7 +46,7 @@ pub struct SweepArgs {
     /// Photons of each point, like 4_456_448, 4.5e6 or 2^22 [default: the scene's, else 2^22].
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub photons: Option<String>,
-    /// Algorithm variant, as for `render` [default: qmc-inverse-reuse].
+    /// Algorithm variant, as for `render` [default: qmc-inverse, whose differences have smaller errors].
     #[arg(long, value_name = "V")]
     pub variant: Option<String>,
     /// Point sequence, as for `render` [default: the variant's].

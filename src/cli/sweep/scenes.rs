@@ -15,7 +15,7 @@ use crate::lab::sweep::figures::{PointFigures, names};
 use crate::lab::sweep::grid::Grid;
 use crate::lab::sweep::results::Sweep;
 use crate::report::numbers::grouped;
-use crate::run::{Plan, Settings, choose_cells};
+use crate::run::{Plan, Settings, Variant, choose_cells};
 use crate::scene::Scene;
 use crate::scene::receiver::{Cells, DividedBy};
 
@@ -168,6 +168,8 @@ impl<'a> Scenes<'a> {
         let args = self.args;
         let mut settings = Settings::default();
         settings.photons = count("--photons", args.photons.as_ref())?.or(run.photons);
+        // Where choices share a coordinate, one that a neighbour makes otherwise changes those after it, too.
+        settings.algorithm.variant = Variant::QmcInverse;
         settings.algorithm = algorithm(settings.algorithm, args.variant.as_ref(), args.sequence.as_ref())?;
         settings.seed = args.seed.or(run.seed).unwrap_or(settings.seed);
         // A scene's replicates yield to a sequence that can have only one; the command line's do not.
