@@ -30,7 +30,7 @@ fn table(s: &Stranger, folder: &str) -> (Vec<String>, Vec<Vec<String>>) {
 #[test]
 fn a_sweep_writes_one_set_with_every_value_and_difference() {
     let s = stranger();
-    let line = "sweep scene.toml --set emitter[0].position[2]=1:2:0.5 --set emitter[0].flux_lm=100,300 --photons 2^12 --of plate.flux_lm,plate.max_lx";
+    let line = "sweep scene.toml --set emitter[0].position[2]=1:2:0.5 --set emitter[0].flux_lm=100,300 --photons 2^16 --of plate.flux_lm,plate.max_lx";
     let (code, out, err) = s.types(line);
     assert_eq!((code, err.as_str()), (0, ""), "{out}");
     assert!(out.contains("points     6\n") && out.contains("written to caustix-out"), "{out}");
@@ -44,7 +44,7 @@ fn a_sweep_writes_one_set_with_every_value_and_difference() {
     };
     assert_eq!(column("emitter[0].position[2]"), [1.0, 1.0, 1.5, 1.5, 2.0, 2.0].map(Some));
     assert_eq!(column("emitter[0].flux_lm"), [100.0, 300.0, 100.0, 300.0, 100.0, 300.0].map(Some));
-    assert_eq!(column("photons"), [4096.0; 6].map(Some));
+    assert_eq!(column("photons"), [65536.0; 6].map(Some));
     // Three times the flux is three times every count: the same photons in both scenes.
     let flux: Vec<f64> = column("plate.flux_lm").into_iter().flatten().collect();
     assert!((flux[1] - 3.0 * flux[0]).abs() < 1e-9 && (flux[5] - 3.0 * flux[4]).abs() < 1e-9, "{flux:?}");
