@@ -67,7 +67,7 @@ fn a_sweep_writes_one_set_with_every_value_and_difference() {
         "## plate.flux_lm",
         "difference along `emitter[0].flux_lm`",
         "| plate.flux_lm | `emitter[0].position[2]` | 4 |",
-        line,
+        "    caustix sweep scene.toml --set 'emitter[0].position[2]=1:2:0.5' --set",
     ] {
         assert!(md.contains(told), "no {told} in\n{md}");
     }

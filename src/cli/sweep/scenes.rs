@@ -166,8 +166,8 @@ impl<'a> Scenes<'a> {
     /// The command line where it speaks, else the scene's [run], else the defaults.
     fn plan(&self, run: &RunDefaults) -> Result<Plan> {
         let args = self.args;
-        let mut settings = Settings::default();
-        settings.photons = count("--photons", args.photons.as_ref())?.or(run.photons);
+        let photons = count("--photons", args.photons.as_ref())?.or(run.photons);
+        let mut settings = Settings { photons, ..Settings::default() };
         // Where choices share a coordinate, one that a neighbour makes otherwise changes those after it, too.
         settings.algorithm.variant = Variant::QmcInverse;
         settings.algorithm = algorithm(settings.algorithm, args.variant.as_ref(), args.sequence.as_ref())?;
