@@ -79,7 +79,7 @@ fn values_and_differences_are_those_of_the_solid_angle() {
                 let truth = truth - exact(before, shown);
                 let error = difference.standard_error.unwrap();
                 assert!((difference.value - truth).abs() < 5.0 * error, "{at} {axis} {difference:?} {truth}");
-                assert!(error < 5e-3 * truth.abs(), "{difference:?}");
+                assert!(error < 1e-2 * truth.abs(), "{difference:?}");
                 differences += 1;
             }
         }

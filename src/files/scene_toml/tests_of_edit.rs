@@ -31,7 +31,7 @@ fn a_value_is_replaced_where_it_stands_and_nothing_else() {
         ("material.none.ior", "{}", "{ ior = 7}"),
         ("run.photons", "\"air\"", "\"air\"\n\n[run]\nphotons = 7\n"),
     ] {
-        assert_eq!(SCENE.matches(old).count() >= 1, true, "{old}");
+        assert!(SCENE.contains(old), "{old}");
         assert_eq!(set(path, "7"), SCENE.replacen(old, new, 1), "{path}");
     }
     let marked = format!("\u{feff}{SCENE}");
