@@ -92,7 +92,7 @@ impl Schedule {
     /// Whether an error is looked at where a run is.
     pub fn is_look(&self, run: &Together<'_>) -> bool {
         let done = run.done();
-        run.is_done() || self.looks_from.is_some_and(|from| done >= from && done % step(done) == 0)
+        run.is_done() || self.looks_from.is_some_and(|from| done >= from && done.is_multiple_of(step(done)))
     }
 }
 
