@@ -5,6 +5,7 @@ mod deadline;
 mod far_field;
 mod forecast;
 mod long;
+mod kept;
 mod misuse;
 mod progress;
 mod results;
@@ -20,6 +21,7 @@ mod photometry;
 mod check;
 mod compare;
 mod sample;
+mod sweep;
 mod shell;
 mod bsdf;
 
@@ -84,6 +86,8 @@ enum Sub {
     Compare(compare::CompareArgs),
     /// Add up the parts of a run (`render --part K/N`) to the results of the whole.
     Merge(part::MergeArgs),
+    /// Trace a grid of scenes by common random numbers: what a value of the scene changes, with the error of every difference.
+    Sweep(sweep::SweepArgs),
     /// Sample directions of a photometric file, and judge them against its candela.
     Sample(SampleArgs),
     /// Say what a scattering table (BSDF) holds: kind, angles, albedo against incidence, reciprocity.
@@ -124,6 +128,7 @@ fn run(post: Option<&dyn Post>) -> ExitCode {
     let scene = match &parsed {
         Ok(Sub::Render(RenderArgs { scene, .. }) | Sub::Check(CheckArgs { scene, .. })) => scene.clone(),
         Ok(Sub::Compare(compare::CompareArgs { scene, .. })) => scene.clone(),
+        Ok(Sub::Sweep(sweep::SweepArgs { scene, .. })) => scene.clone(),
         _ => None,
     };
     let done = match parsed {
@@ -146,6 +151,7 @@ fn run(post: Option<&dyn Post>) -> ExitCode {
         Ok(Sub::Check(args)) => check::run(&args),
         Ok(Sub::Compare(args)) => compare::run(&args),
         Ok(Sub::Merge(args)) => part::merge(&args),
+        Ok(Sub::Sweep(args)) => sweep::run(&args),
         Ok(Sub::Sample(args)) => sample::run(&args),
         Ok(Sub::Bsdf(args)) => bsdf::run(&args),
         Ok(Sub::Completions(args)) => shell::completions(&args),

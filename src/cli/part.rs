@@ -133,6 +133,15 @@ pub fn merge(args: &MergeArgs) -> Done {
     let plan = Plan::new(&head.settings()?)?;
     head.check(&scene, &plan).map_err(|e| e.in_file(saved[0].path()))?;
     head.divide(&mut scene);
+    if !is_together(&scene, &plan) {
+        let found = format!(
+            "the state of {} replicates, whose maps do not fit into memory together",
+            plan.replicates()
+        );
+        return Err(Diagnostic::new(Kind::Limit, found, "the state of a part of a run")
+            .in_file(saved[0].path())
+            .into());
+    }
     catch_interrupts();
     let folder = results::take(&args.output)?;
     let mut inputs = results::inputs(path.as_deref(), &scene);

@@ -22,7 +22,7 @@ const STAGING: (&str, &str) = (".caustix-", ".new");
 /// Largest list of files that is read.
 const MOST_MANIFEST_BYTES: u64 = 1 << 30;
 /// Files that list others and vouch for them, each for a set of its own.
-pub const MANIFESTS: [&str; 2] = ["report.json", "compare.json"];
+pub const MANIFESTS: [&str; 3] = ["report.json", "compare.json", "sweep.json"];
 /// Endings of files that are results.
 const ENDINGS: [&str; 8] = ["exr", "png", "csv", "ply", "vtp", "svg", "md", "json"];
 

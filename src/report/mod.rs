@@ -1,4 +1,5 @@
-//! What a run says: report.json, the printed summary, maps as EXR, CSV, PLY and VTP; what a study says: [`compare`], [`room`].
+//! What a run says: report.json, the printed summary, maps as EXR, CSV, PLY and VTP; what a study says: [`compare`], [`room`],
+//! [`sweep`].
 //!
 //! Numbers, text and plain files only: what is drawn is in `plot`, which comes after this room.
 
@@ -28,3 +29,4 @@ pub mod bsdf;
 pub mod certificate;
 pub mod compare;
 pub mod room;
+pub mod sweep;

@@ -91,6 +91,15 @@ pub fn bare(value: Option<f64>) -> String {
     value.filter(|v| v.is_finite()).map_or(String::new(), |v| v.to_string())
 }
 
+/// A text as a field of CSV (RFC 4180).
+pub fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
 /// A line of a Markdown table.
 pub fn piped(cells: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     let cell = |c: &str| if c.is_empty() { " |".to_owned() } else { format!(" {c} |") };

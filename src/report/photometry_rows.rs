@@ -2,7 +2,7 @@
 
 use crate::photometry::{Photometry, Summary};
 
-use super::numbers::{bare, printable};
+use super::numbers::{bare, printable, quoted};
 
 /// The candela table of a file as CSV: a row for each V, a column for each H, as they are stored; value x
 /// multiplier, divided by
@@ -58,15 +58,6 @@ pub fn row_csv(s: &Summary) -> String {
         s.warnings.len().to_string(),
     ];
     words.join(",") + "\n"
-}
-
-/// A text as a field of CSV (RFC 4180).
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }
 
 /// Several files, a row each, columns aligned.

@@ -342,6 +342,11 @@ impl Outcome {
         })
     }
 
+    /// Photons that a far field saw, by replicate.
+    pub(crate) fn far_field_seen(&self, field: usize) -> &[u64] {
+        &self.far_fields[field].seen
+    }
+
     /// Flux absorbed by a surface, lm.
     pub fn absorbed_lm(&self, surface: usize) -> Estimate {
         self.total(&self.accounts, surface)

@@ -22,8 +22,10 @@ const PART: u64 = 64;
 const FEWEST_PHOTONS: u64 = 1 << 10;
 const MOST_PHOTONS: u64 = 1 << 16;
 
+/// Most cells along a side that a pilot chooses.
+pub const MOST_BY_PILOT: u32 = 1024;
 /// Cells along the longer side. A map of fewer shows nothing; more are for those who ask.
-const COUNTS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024];
+const COUNTS: [u32; 15] = [8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, MOST_BY_PILOT];
 
 /// Whether cells are as few or as many as a pilot chooses, so that their error may be another than [`CELL_ERROR`].
 pub fn is_at_bound(cells: [u32; 2]) -> Option<&'static str> {

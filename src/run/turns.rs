@@ -147,12 +147,12 @@ impl<'s> Turns<'s> {
     /// # Errors
     /// Those of the stages.
     pub fn run(&mut self, watched: Watched<'_>, by: &mut impl Stage) -> Result<()> {
-        let run = self.to_the_end(watched, by);
+        let run = self.all_stages(watched, by);
         self.ended_s = Some(self.trace_s());
         run
     }
 
-    fn to_the_end(&mut self, watched: Watched<'_>, by: &mut impl Stage) -> Result<()> {
+    fn all_stages(&mut self, watched: Watched<'_>, by: &mut impl Stage) -> Result<()> {
         let interrupt = watched.interrupt;
         while self.replicate < self.plan.replicates() {
             for end in stages(&self.plan, self.replicate) {

@@ -26,3 +26,5 @@ mod sample;
 mod shell;
 #[cfg(unix)]
 mod strangers;
+#[cfg(unix)]
+mod sweep;

@@ -2,8 +2,8 @@
 
 use crate::support::stranger::Stranger;
 
-const COMMANDS: [&str; 8] =
-    ["render", "photometry", "check", "compare", "sample", "bsdf", "completions", "man"];
+const COMMANDS: [&str; 9] =
+    ["render", "photometry", "check", "compare", "sweep", "sample", "bsdf", "completions", "man"];
 
 /// The long options that the help of a subcommand lists.
 fn options(s: &Stranger, command: &str) -> Vec<String> {

@@ -13,6 +13,7 @@ mod make_ies;
 
 mod broken_scene;
 mod damage;
+mod damaged_states;
 mod eulumdat_damaged;
 mod eulumdat_made;
 mod eulumdat_real;

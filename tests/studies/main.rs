@@ -12,3 +12,4 @@ mod compare_resume;
 mod made_up;
 mod reference;
 mod room;
+mod sweep;

@@ -1,7 +1,6 @@
 //! `caustix compare`: the error of every algorithm variant against a reference; of sequences side by side where the scene has
 //! `[compare]`.
 
-mod kept;
 mod room;
 mod study;
 
@@ -12,10 +11,12 @@ use clap::Args;
 use crate::error::{Diagnostic, Kind, Result};
 
 use crate::lab::study::cells::MOST_CELLS;
+use crate::scene::Scene;
 
 use super::args::{MAX_THREADS, whole};
+use super::kept::Order;
 use super::start::load;
-use super::{Done, warn};
+use super::{Done, results, warn};
 
 /// Most point sets of a variant.
 const MOST_SEEDS: u32 = 1024;
@@ -68,6 +69,14 @@ pub(super) fn run(args: &CompareArgs) -> Done {
     let (scene, _) = load(args.scene.as_deref(), args.confine, args.quiet)?;
     warn(&scene.warnings);
     if scene.compared_reflections.is_some() { room::run(args, &scene) } else { study::run(args, &scene) }
+}
+
+impl CompareArgs {
+    /// What a study of these files is given and writes.
+    fn order<'a>(&'a self, scene: &Scene, files: &'a [&'a str]) -> Order<'a> {
+        let inputs = results::inputs(self.scene.as_deref(), scene);
+        Order { output: &self.output, quiet: self.quiet, inputs, list: "compare.json", files }
+    }
 }
 
 /// The seeds asked for.

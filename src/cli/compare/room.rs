@@ -2,6 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
+use crate::cli::kept::{Kept, command_line, scene_key};
 use crate::cli::progress::{INTERRUPTED, processor_time};
 use crate::cli::start::thread_pool;
 use crate::cli::{Done, exit};
@@ -11,7 +12,6 @@ use crate::lab::room::{Measurement, Options, RoomStudy, Task};
 use crate::report::room::{csv, deviations_csv, markdown, text};
 use crate::scene::Scene;
 
-use super::kept::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
 /// What a study writes.
@@ -21,7 +21,7 @@ const FILES: [&str; 3] = ["compare.csv", "compare.md", "deviations.csv"];
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     refuse_what_has_no_meaning(args)?;
     let options = Options::new(Options::paper_ladder(args.full), seeds(args)?)?;
-    let kept = Kept::start(args, scene, options.photons(), &FILES)?;
+    let kept = Kept::start(args.order(scene, &FILES), options.photons())?;
     let pool = thread_pool(args.threads)?;
     let mut measurements = Vec::new();
     for task in options.tasks() {
@@ -44,7 +44,7 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
         (told, markdown(&study, &command_line())),
         (deviations, deviations_csv(&study)),
     ];
-    let is_whole = write_study(args, scene, &kept, &files, &text(&study))?;
+    let is_whole = kept.write(scene, &files, &text(&study))?;
     Ok(if is_whole { exit::DONE } else { exit::WRONG })
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
+use crate::cli::kept::{Kept, command_line, scene_key};
 use crate::cli::progress::{INTERRUPTED, processor_time};
 use crate::cli::start::thread_pool;
 use crate::cli::{Done, count, exit, in_option};
@@ -23,7 +24,6 @@ use crate::report::compare::text::text;
 use crate::run::{Algorithm, MAX_PHOTONS, Variant};
 use crate::scene::Scene;
 
-use super::kept::{Kept, command_line, scene_key, write_study};
 use super::{CompareArgs, seeds};
 
 /// Photons of each run where none is named.
@@ -49,7 +49,7 @@ const FILES: [&str; 3] = ["compare.csv", "compare.md", "compare.svg"];
 /// Makes the study as far as it gets; the exit code.
 pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
     let asked = Asked::new(args, scene)?;
-    let kept = Kept::start(args, scene, asked.work(), &FILES)?;
+    let kept = Kept::start(args.order(scene, &FILES), asked.work())?;
     let pool = thread_pool(args.threads)?;
     let job = Job { scene, asked, kept };
     let study = pool.install(|| job.study(args))?;
@@ -63,7 +63,7 @@ pub fn run(args: &CompareArgs, scene: &Scene) -> Done {
             (told, markdown(study, &table)),
             (plot, drawing(study, &table).to_svg()),
         ];
-        is_whole = write_study(args, scene, &job.kept, &files, &text(study, &table))?;
+        is_whole = job.kept.write(scene, &files, &text(study, &table))?;
     }
     Ok(match study {
         _ if !is_whole => exit::WRONG,

@@ -150,7 +150,7 @@ impl Counted {
         let merit = (arrived > 0).then(|| (arrived as f64 / error).powi(2) / photons);
         let share = arrived as f64 / photons;
         let independent =
-            (self.is_once && arrived > 0 && share < 1.0).then(|| photons * share * (1.0 - share));
+            (self.is_once && arrived > 0 && share < 1.0).then_some(photons * share * (1.0 - share));
         let rate = self.rate(replicates);
         let drift = self.drift(replicates);
         let [skewness, kurtosis] = [moments::skewness, moments::kurtosis].map(|of| of(&self.on_receiver));

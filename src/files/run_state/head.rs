@@ -9,6 +9,7 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::files::excerpt::cut;
 use crate::run::goal::Looks;
 use crate::run::kept::is_together;
+use crate::run::pilot::MOST_BY_PILOT;
 use crate::run::replicates::Course;
 use crate::run::turns::Turns;
 use crate::run::{Algorithm, ErrorGoal, ErrorOf, Plan, Settings};
@@ -223,7 +224,9 @@ impl Head {
     pub fn check_photons(&self, scene: &Scene, plan: &Plan) -> Result<()> {
         let version = env!("CARGO_PKG_VERSION");
         let is_scene = self.scene_sha256 == scene.identity.results;
-        let is_divided = self.cells.len() == scene.receivers.len();
+        let is_possible = |n: &u32| (1..=MOST_BY_PILOT).contains(n);
+        let is_divided = self.cells.len() == scene.receivers.len()
+            && self.cells.iter().flatten().flatten().all(is_possible);
         let differs = |found: String, required: String| Err(Diagnostic::new(Kind::Range, found, required));
         if self.caustix != version {
             let found = format!("the state of a run by caustix {}", cut(&self.caustix));

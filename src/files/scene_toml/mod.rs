@@ -9,9 +9,11 @@ mod camera;
 mod canonical;
 pub mod count;
 pub mod document;
+pub mod edit;
 mod emitter;
 mod far_field;
 mod heightfield;
+mod key_path;
 mod loader;
 mod material;
 mod names;
@@ -19,6 +21,7 @@ mod numbers;
 mod part;
 mod parts;
 mod receiver;
+pub mod source;
 mod surface;
 mod syntax;
 mod table;
@@ -27,9 +30,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Diagnostic, Kind, Place};
-use crate::files::bytes::{Base, Files, read_capped};
-use crate::files::confine::Confinement;
-use crate::files::kinds::{Use, instead};
+use crate::files::bytes::{Base, Files};
 use crate::math::digest::sha256_hex;
 use crate::scene::{Identity, Scene, SceneBuilder};
 use crate::surface::Kind as MaterialKind;
@@ -39,6 +40,7 @@ use loader::Loader;
 pub use parts::MOST_PARTS;
 use parts::Parts;
 pub use parts::RunDefaults;
+use source::Source;
 use table::Table;
 
 /// Largest scene file that is read: 16 MiB.
@@ -61,8 +63,7 @@ pub struct SceneFile {
 /// Every error of the file, in its order: syntax, unknown keys and words, missing keys, values out of range,
 /// names used twice or not at all, files that are not there. At most `document::MOST_ERRORS`, and one that counts the rest.
 pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
-    let path = path.as_ref();
-    read_from(path, Base::Directory(folder_of(path)))
+    read_from(path.as_ref(), false)
 }
 
 /// The same of a scene that may name only files at or below its own folder, links followed: one from a stranger.
@@ -70,27 +71,12 @@ pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
 /// # Errors
 /// Those of [`read`]; a scene file or one it names that lies elsewhere (docs/SECURITY.md).
 pub fn read_confined(path: impl AsRef<Path>) -> Result<SceneFile, Vec<Diagnostic>> {
-    let path = path.as_ref();
-    let confinement = Confinement::of(path).map_err(|e| vec![e.in_file(path)])?;
-    read_from(path, Base::Confined(folder_of(path), confinement))
+    read_from(path.as_ref(), true)
 }
 
-fn folder_of(path: &Path) -> PathBuf {
-    path.parent().map(PathBuf::from).unwrap_or_default()
-}
-
-fn read_from(path: &Path, base: Base) -> Result<SceneFile, Vec<Diagnostic>> {
-    let name = path.display().to_string();
-    let bytes = read_capped(path, SCENE_LIMIT_BYTES).map_err(|e| vec![e.in_file(&name)])?;
-    let file = std::str::from_utf8(&bytes)
-        .map_err(|e| vec![not_utf8(&bytes, e.valid_up_to(), &name)])
-        .and_then(|text| parse(text, &name, base))
-        .map_err(|errors| match instead(&bytes, Use::Scene, "a scene file (TOML)", &name) {
-            Some(other) => vec![other],
-            None => errors,
-        })?;
-    let missing: Vec<_> = file.parts.files.iter().filter_map(|f| file.loader.missing(f)).collect();
-    if missing.is_empty() { Ok(file) } else { Err(missing) }
+fn read_from(path: &Path, confine: bool) -> Result<SceneFile, Vec<Diagnostic>> {
+    let source = Source::open(path, confine)?;
+    source.read(&source.text)
 }
 
 /// The scene of a file.
@@ -117,8 +103,13 @@ pub const BUILT_IN: &str = "wavy_glass.toml (built in)";
 /// # Errors
 /// None, as the tests show; they are those of `parse`.
 pub fn built_in() -> Result<SceneFile, Vec<Diagnostic>> {
-    let text = include_str!("../../../scenes/wavy_glass.toml");
-    parse(text, BUILT_IN, Base::BuiltIn)
+    let (text, name) = built_in_text();
+    parse(text, name, Base::BuiltIn)
+}
+
+/// The text inside the program, and what messages call it.
+fn built_in_text() -> (&'static str, &'static str) {
+    (include_str!("../../../scenes/wavy_glass.toml"), BUILT_IN)
 }
 
 /// Read a scene from its text; no file is opened. `name` is for messages.

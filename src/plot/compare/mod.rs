@@ -1,7 +1,5 @@
 //! compare.svg: nRMS against the number of photons, both logarithmic, a panel for every grid.
 
-mod markers;
-
 use std::ops::Range;
 
 use crate::lab::study::results::Study;
@@ -14,7 +12,7 @@ use crate::report::numbers::three_digits;
 use super::canvas::{Anchor, TextStyle};
 use super::drawing::{Drawing, Pen, Shape, ink, polyline, text};
 use super::font;
-use markers::{colour, marker};
+use super::markers::{colour, marker};
 
 const MARGIN: f64 = 22.0;
 /// Room for the numbers at the left of a row of panels.

@@ -3,7 +3,7 @@
 use crate::lab::study::norms::Errors;
 use crate::lab::study::results::Study;
 use crate::lab::study::table::Table;
-use crate::report::numbers::bare;
+use crate::report::numbers::{bare, quoted};
 
 /// The columns; names are a contract.
 pub const HEADER: &str = "variant,photons,cells,relative_rms,nrms,relative_l1,nrms_spread,photons_per_s,coordinates,\
@@ -32,13 +32,4 @@ pub fn csv(study: &Study, table: &Table) -> String {
         out += &format!("{name},{photons},{cells},{}\n", numbers.join(","));
     }
     out
-}
-
-/// RFC 4180: quotes around a field that needs them, doubled inside.
-fn quoted(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field.to_owned()
-    }
 }

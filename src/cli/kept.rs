@@ -1,13 +1,12 @@
 //! Parts that a study has finished, and what names them.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::CompareArgs;
-use crate::cli::progress::{Progress, catch_interrupts};
-use crate::cli::{exit, print, results, say};
+use super::progress::{Progress, catch_interrupts};
+use super::{exit, print, results, say};
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::clear_temporaries;
 use crate::files::folder::Folder;
@@ -30,25 +29,44 @@ pub fn scene_key(scene: &Scene) -> String {
     key
 }
 
+/// What a study is given and writes.
+pub struct Order<'a> {
+    /// Its folder.
+    pub output: &'a Path,
+    /// No bar and no table.
+    pub quiet: bool,
+    /// Files that are read.
+    pub inputs: Vec<PathBuf>,
+    /// The list of the files that are written.
+    pub list: &'static str,
+    /// The names of these.
+    pub files: &'a [&'a str],
+}
+
 /// The parts that a study keeps, and the bar over its photons.
 pub struct Kept {
     folder: Folder,
+    inputs: Vec<PathBuf>,
+    list: &'static str,
+    quiet: bool,
     pub parts: Parts,
     pub progress: Progress,
 }
 
 impl Kept {
-    /// Takes the folder of a study of so many photons, whose files have these names, and catches Ctrl-C.
+    /// Takes the folder of a study of so many photons, and catches Ctrl-C.
     ///
     /// # Errors
     /// A folder that cannot be made or that another run has; files that would replace those of the scene.
-    pub fn start(args: &CompareArgs, scene: &Scene, photons: u64, names: &[&str]) -> Result<Self> {
-        let folder = results::take(&args.output)?;
-        check_outputs(&outputs(args, names), &results::inputs(args.scene.as_deref(), scene))?;
+    pub fn start(order: Order<'_>, photons: u64) -> Result<Self> {
+        let Order { output, quiet, inputs, list, files } = order;
+        let folder = results::take(output)?;
+        let outputs: Vec<PathBuf> = files.iter().chain(&[list]).map(|name| output.join(name)).collect();
+        check_outputs(&outputs, &inputs)?;
         catch_interrupts();
-        let parts = Parts::new(args.output.join("parts"));
+        let parts = Parts::new(output.join("parts"));
         clear_temporaries(parts.directory());
-        Ok(Self { folder, parts, progress: Progress::new(args.quiet, "starting", photons) })
+        Ok(Self { folder, inputs, list, quiet, parts, progress: Progress::new(quiet, "starting", photons) })
     }
 
     /// A part that is there and whole; one that is damaged is told, and made again.
@@ -95,10 +113,26 @@ impl Kept {
         say(&format!("caustix: interrupted; {what}. The same command goes on from the parts in {folder}"));
         exit::INTERRUPTED
     }
-}
 
-/// The list of a study's files.
-const LIST: &str = "compare.json";
+    /// Writes the files of a study, and prints what it found; whether all could be written.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn write(&self, scene: &Scene, files: &[(&str, String)], text: &str) -> Result<bool> {
+        let mut set = Set::new(&self.folder, self.list)?;
+        for (name, content) in files {
+            set.add_bytes(name, content.as_bytes());
+        }
+        let report = StudyReport { caustix: env!("CARGO_PKG_VERSION"), scene: SceneReport::new(scene) };
+        let written = set.finish(|files| vouching(&report, files));
+        results::tell(&self.folder, &written, &self.inputs);
+        if !self.quiet {
+            print(text);
+            print(&results::written_to(&self.folder, &written));
+        }
+        Ok(written.errors.is_empty())
+    }
+}
 
 /// What the list says besides.
 #[derive(Serialize)]
@@ -107,36 +141,6 @@ struct StudyReport {
     caustix: &'static str,
     /// The scene.
     scene: SceneReport,
-}
-
-/// Writes the files of a study, and prints what it found; whether all could be written.
-///
-/// # Errors
-/// A folder that cannot be written to.
-pub fn write_study(
-    args: &CompareArgs,
-    scene: &Scene,
-    kept: &Kept,
-    files: &[(&str, String)],
-    text: &str,
-) -> Result<bool> {
-    let mut set = Set::new(&kept.folder, LIST)?;
-    for (name, content) in files {
-        set.add_bytes(name, content.as_bytes());
-    }
-    let report = StudyReport { caustix: env!("CARGO_PKG_VERSION"), scene: SceneReport::new(scene) };
-    let written = set.finish(|files| vouching(&report, files));
-    results::tell(&kept.folder, &written, &results::inputs(args.scene.as_deref(), scene));
-    if !args.quiet {
-        print(text);
-        print(&results::written_to(&kept.folder, &written));
-    }
-    Ok(written.errors.is_empty())
-}
-
-/// Every file of a study.
-fn outputs(args: &CompareArgs, names: &[&str]) -> Vec<PathBuf> {
-    names.iter().chain(&[LIST]).map(|name| args.output.join(name)).collect()
 }
 
 /// The command as it was typed, without the folder that the program lies in.

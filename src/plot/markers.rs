@@ -21,13 +21,13 @@ const COLOURS: [[u8; 3]; 7] = [
     [0xe6, 0x9f, 0x00],
 ];
 
-/// The colour of variant number `index`.
+/// The colour of line number `index`.
 pub fn colour(index: usize) -> Colour {
     let [red, green, blue] = COLOURS[index % COLOURS.len()];
     Colour::srgb(red, green, blue)
 }
 
-/// The marker of variant number `index`; eight shapes beside seven colours repeat only after 56 variants.
+/// The marker of line number `index`; eight shapes beside seven colours repeat only after 56 lines.
 pub fn marker(index: usize, at: [f64; 2], hollow: bool) -> Vec<Shape> {
     let outline = |size: f64, colour: Colour| Shape::Polygon {
         corners: corners(index).into_iter().map(|[x, y]| [at[0] + size * x, at[1] + size * y]).collect(),
