@@ -259,7 +259,7 @@ mod tests {
         ];
         for (change, told) in changes {
             let error = ours.check(3, &read(change)).unwrap_err().to_string();
-            assert!(error.contains(told) && error.contains("same"), "{error}");
+            assert!(error.contains(told) && error.contains("required"), "{error}");
         }
     }
 }
