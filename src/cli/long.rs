@@ -199,8 +199,13 @@ fn part(text: &str) -> Result<[u32; 2]> {
 ///
 /// # Errors
 /// States that are there and all damaged.
-pub fn found(path: &Path) -> Result<Option<Saved>> {
-    let Some((saved, wrong)) = run_state::newest(path)? else {
+pub fn found(path: &Path, quiet: bool) -> Result<Option<Saved>> {
+    let damaged =
+        |e: Diagnostic| e.hint("remove it, or leave out --resume: the run starts with its first photon then");
+    let Some((saved, wrong)) = run_state::newest(path).map_err(damaged)? else {
+        if quiet {
+            return Ok(None);
+        }
         say(&format!("caustix: no {} to go on from: this run starts with its first photon", path.display()));
         return Ok(None);
     };
@@ -271,10 +276,7 @@ impl Job<'_> {
 
     /// The indices of each replicate that it is of.
     pub fn indices(&self) -> std::ops::Range<u64> {
-        let n = self.plan.photons_per_replicate();
-        let [k, of] = self.part_of.unwrap_or([1, 1]).map(u128::from);
-        let at = |k: u128| (u128::from(n) * k / of) as u64;
-        at(k - 1)..at(k)
+        self.plan.part(self.part_of.unwrap_or([1, 1]))
     }
 
     fn photons(&self) -> u64 {

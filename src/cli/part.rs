@@ -66,7 +66,7 @@ pub fn run(args: &RenderArgs, asked: &Asked<'_>, mut scene: Scene, part: [u32; 2
     let _folder =
         Folder::take_part(&args.output, &format!(".caustix-part-{k}.lock"), "a directory for the results")?;
     check_outputs(std::slice::from_ref(&state), &results::inputs(args.scene.as_deref(), &scene))?;
-    let saved = if args.resume { long::found(&state)? } else { None };
+    let saved = if args.resume { long::found(&state, args.quiet)? } else { None };
     let (plan, _) = asked.plan(saved.as_ref().map(|saved| &saved.head))?;
     asked.say_rounding(&plan);
     check(&scene, &plan, saved.as_ref(), part)?;
@@ -106,17 +106,31 @@ pub fn run(args: &RenderArgs, asked: &Asked<'_>, mut scene: Scene, part: [u32; 2
 fn check(scene: &Scene, plan: &Plan, saved: Option<&Saved>, [k, of]: [u32; 2]) -> Result<()> {
     let refuse = |found: String, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
     let algorithm = plan.algorithm();
-    if algorithm.sampling().skips_points() || !is_together(scene, plan) {
-        let required = "a variant whose photons are numbered as its points are, of a sequence that is not made for its number, \
-                        and maps of all replicates that fit into memory";
+    if algorithm.sampling().skips_points() || algorithm.sequence.needs_number() {
+        let required = "a variant whose photons are numbered as its points are, of a sequence that is not made for its number";
         return refuse(format!("a part of a run by {}", algorithm.name()), required);
+    }
+    if !is_together(scene, plan) {
+        let required =
+            "fewer cells or replicates: at most 2^27 counters in all, so that parts can be added up";
+        return refuse(format!("a part of {} replicates of maps that large", plan.replicates()), required);
+    }
+    if u64::from(of) > plan.photons_per_replicate() {
+        let found = format!("{of} parts of replicates of {} photons", plan.photons_per_replicate());
+        return refuse(found, "at most as many parts as a replicate has photons");
     }
     match saved.map(|saved| saved.head.part_of) {
         Some(part_of) if part_of != Some([k, of]) => {
             let found = part_of.map_or("a whole run".into(), |[k, of]| format!("part {k} of {of}"));
-            refuse(format!("the state of {found}"), &format!("one of part {k} of {of}"))
+            let error = refuse(format!("the state of {found}"), &format!("one of part {k} of {of}"));
+            error.map_err(|e| {
+                e.hint("another folder, or without --resume").in_file(saved.map_or("".as_ref(), Saved::path))
+            })
         }
-        _ => Ok(()),
+        Some(_) => {
+            saved.map_or(Ok(()), |saved| saved.head.check_part(plan).map_err(|e| e.in_file(saved.path())))
+        }
+        None => Ok(()),
     }
 }
 
@@ -132,6 +146,7 @@ pub fn merge(args: &MergeArgs) -> Done {
     scene.found.iter().for_each(say_found);
     let plan = Plan::new(&head.settings()?)?;
     head.check(&scene, &plan).map_err(|e| e.in_file(saved[0].path()))?;
+    saved.iter().try_for_each(|part| part.head.check_part(&plan).map_err(|e| e.in_file(part.path())))?;
     head.divide(&mut scene);
     if !is_together(&scene, &plan) {
         let found = format!(

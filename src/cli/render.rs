@@ -55,7 +55,7 @@ pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
     let inputs = results::inputs(args.scene.as_deref(), &scene);
     check_outputs(&outputs(args, &scene), &inputs)?;
     let state = args.output.join(STATE);
-    let saved = if args.resume { long::found(&state)? } else { None };
+    let saved = if args.resume { long::found(&state, args.quiet)? } else { None };
     let (plan, goal) = asked.plan(saved.as_ref().map(|saved| &saved.head))?;
     asked.say_rounding(&plan);
     let pool = thread_pool(post.map_or(args.threads, |post| ranks::threads(args, post)))?;

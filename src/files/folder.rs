@@ -65,7 +65,13 @@ impl Folder {
     pub fn take_part(path: &Path, locked: &str, required: &str) -> Result<Self> {
         let is_new = !path.exists();
         make_directory(path, required)?;
-        let lock = lock(path, locked)?;
+        let lock = lock(path, locked).map_err(|e| match e.kind() {
+            Kind::Unavailable if locked != LOCK => {
+                let found = "this part of the run is being traced already";
+                Diagnostic::new(Kind::Unavailable, found, "each part once").in_file(path)
+            }
+            _ => e,
+        })?;
         Ok(Self { path: path.to_path_buf(), lock, locked: locked.to_owned(), is_new, cleared: 0, torn: None })
     }
 

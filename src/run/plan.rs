@@ -1,5 +1,7 @@
 //! What a run is asked to do, made definite.
 
+use std::ops::Range;
+
 use crate::error::{Diagnostic, Kind, Result};
 
 use super::algorithm::Algorithm;
@@ -84,6 +86,13 @@ impl Plan {
     pub(super) fn doublings(&self, first: u64) -> impl Iterator<Item = u64> + use<> {
         let n = self.photons_per_replicate;
         std::iter::successors(Some(n.min(first)), move |end| (*end < n).then(|| n.min(2 * end)))
+    }
+
+    /// The indices of the kth of so many parts of each replicate, counted from 1.
+    pub fn part(&self, [k, of]: [u32; 2]) -> Range<u64> {
+        let (n, k, of) = (u128::from(self.photons_per_replicate), u128::from(k), u128::from(of));
+        let at = |k: u128| (n * k / of) as u64;
+        at(k - 1)..at(k)
     }
 
     /// Replicates, R.

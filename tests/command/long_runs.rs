@@ -201,7 +201,7 @@ fn parts_that_are_missing_doubled_unfinished_or_of_another_run_are_refused_by_na
     part(2, "--photons 3000 --seed 2");
     merge(&[&one, "2--photons3000--seed2", &three], &["2--photons3000--seed2: ", "seed 2", "seed 1"]);
     part(2, "--photons 6000");
-    merge(&[&one, "2--photons6000", &three], &["2--photons6000: ", "photons 750", "photons 375"]);
+    merge(&[&one, "2--photons6000", &three], &["2--photons6000: ", "a replicate: 750", "a replicate: 375"]);
     part(2, "--photons 3000 --variant mc");
     merge(&[&one, "2--photons3000--variantmc", &three], &["by mc"]);
     // Another scene under the name of the first.
@@ -212,6 +212,16 @@ fn parts_that_are_missing_doubled_unfinished_or_of_another_run_are_refused_by_na
     s.write("elsewhere.toml", format!("# the same\n{SCENE}"));
     s.is_told(&format!("merge {one} {two} {three} -o m --quiet --scene elsewhere.toml"), 0, &[]);
     assert_eq!(s.report("m")["photons"], 3000);
+    // More photons than the parts were of: their indices are others.
+    s.write("scene.toml", SCENE);
+    for k in 1..=3 {
+        s.is_told(&format!("render scene.toml -o more --quiet --part {k}/3 --photons 3000"), 0, &[]);
+    }
+    let told = ["more/part-2.state: found part 2 of 3 of a run of another number of photons", "are merged"];
+    s.is_told("render scene.toml -o more --quiet --part 2/3 --photons 6000 --resume", 1, &told);
+    let told = ["more/part-2.state: found the state of part 2 of 3", "one of part 2 of 4", "another folder"];
+    s.is_told("render scene.toml -o more --quiet --part 2/4 --photons 3000 --resume", 1, &told);
+    s.is_told("render scene.toml -o few --part 2/9 --photons 64", 1, &["9 parts of replicates of 8 photons"]);
     // What is no state, and a state that lacks its end.
     let bytes = fs::read(s.path(&two)).unwrap();
     s.write("cut", &bytes[..bytes.len() - 40]);
@@ -347,6 +357,11 @@ fn a_run_ends_at_its_error_or_says_that_it_did_not() {
     s.is_told("render scene.toml -o out --quiet --resume --error 1", 0, &[]);
     s.is_told("render scene.toml -o whole --quiet --error 1", 0, &[]);
     assert_same(&s, "out", "whole");
+    // Of the flux: a sixth of the light, sure to 1 % after 50,000 independent photons.
+    s.is_told("render scene.toml -o flux --quiet --variant mc --error 1 --error-of flux", 0, &[]);
+    let report = s.report("flux");
+    assert!((40_000..90_000).contains(&report["photons"].as_u64().unwrap()), "{}", report["photons"]);
+    assert_eq!(report["stopped_by"], "error");
     // Too few photons, too little time.
     let told = ["all photons are traced", "not the 0.01 % that were asked for", "--resume"];
     s.is_told("render scene.toml -o few --quiet --error 0.01 --photons 2^16", 3, &told);
@@ -406,5 +421,5 @@ fn options_that_do_not_go_together_are_told() {
     }
     s.is_told("render far.toml --error 1 --error-of flux -o out --quiet", 0, &[]);
     let told = ["no out2/run.state to go on from: this run starts with its first photon"];
-    s.is_told("render scene.toml -o out2 --quiet --resume --photons 2^12", 0, &told);
+    s.is_told("render scene.toml -o out2 --resume --photons 2^12", 0, &told);
 }

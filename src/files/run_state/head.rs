@@ -197,15 +197,35 @@ impl Head {
         }
         for (what, found, required) in [
             ("with seed", other.seed, self.seed),
-            ("of replicates of photons", other.photons_per_replicate, self.photons_per_replicate),
-            ("of replicates", other.replicates.into(), self.replicates.into()),
-            ("of parts", of(other).into(), of(self).into()),
+            ("with photons a replicate:", other.photons_per_replicate, self.photons_per_replicate),
+            ("with replicates:", other.replicates.into(), self.replicates.into()),
+            ("with parts:", of(other).into(), of(self).into()),
         ] {
             if found != required {
                 return differs(what, [&found, &required]);
             }
         }
         Ok(())
+    }
+
+    /// That it is of the indices that its part of the run has.
+    ///
+    /// # Errors
+    /// Another number of photons since.
+    pub fn check_part(&self, plan: &Plan) -> Result<()> {
+        let Some([k, of]) = self.part_of else { return Ok(()) };
+        let [start, end] = self.part;
+        if (start..end) == plan.part([k, of]) {
+            return Ok(());
+        }
+        let n = grouped(plan.photons_per_replicate());
+        let found = format!(
+            "part {k} of {of} of a run of another number of photons: indices {start} to {end} of each replicate"
+        );
+        let required = format!(
+            "those of {n} photons a replicate: photons are added to a run when its parts are merged, not to its parts"
+        );
+        Err(Diagnostic::new(Kind::Range, found, required))
     }
 
     /// Divides the receivers of a scene as the run's pilot did.
