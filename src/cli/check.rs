@@ -14,7 +14,7 @@ use crate::picture;
 use crate::report::json::json;
 use crate::report::numbers::{digits, duration, grouped};
 use crate::run::dark::is_long;
-use crate::run::plan::DEFAULT_REPLICATES;
+use crate::run::kept::memory_bytes;
 use crate::run::{Plan, Settings, trace, warnings};
 use crate::scene::camera::Method;
 use crate::scene::receiver::DividedBy;
@@ -219,17 +219,8 @@ impl Check {
             method: c.method.word(),
             photon_memory_mb: if c.method == Method::Map { c.photon_memory_bytes as f64 / 1e6 } else { 0.0 },
         });
-        // Sums of a run: counters of one replicate, sum and sum of squares over replicates.
-        let per_cell = 2 * size_of::<u64>() + size_of::<u128>();
-        let cells: usize = scene.receivers.iter().map(|r| r.cells.len()).sum();
         let of_camera = scene.camera.as_ref().map_or(0, |c| picture::memory_bytes(c, scene.is_coloured()));
-        // Counters of every replicate, twice.
-        let replicates = DEFAULT_REPLICATES as usize;
-        let nodes: usize =
-            far_fields.iter().map(|f| f.nodes).sum::<usize>() * 2 * replicates * size_of::<u64>();
-        let fine: usize = scene.receivers.iter().filter_map(|r| r.spot).map(|spot| spot.cells()).sum();
-        let kept = nodes + fine * 2 * replicates * size_of::<u64>();
-        let memory_bytes = (scene.memory_bytes() + cells * per_cell + kept) as u64 + of_camera;
+        let memory_bytes = (scene.memory_bytes() as u64).saturating_add(memory_bytes(scene)) + of_camera;
         Self {
             ok: true,
             requires: requirements(scene),
