@@ -151,10 +151,11 @@ mod tests {
     #[test]
     fn what_is_to_be_expected_follows_the_last_octave() {
         // Errors of counting: a quarter of the error takes sixteen times the photons. Of nets: four times.
-        assert_eq!(looks(&[(1024, 0.04), (2048, 0.04 / 2_f64.sqrt())]).expected(0.01).unwrap(), 16_384);
-        assert_eq!(looks(&[(1024, 0.08), (2048, 0.04)]).expected(0.01).unwrap(), 8192);
+        let counting = looks(&[(1024, 0.04), (2048, 0.04 / 2_f64.sqrt())]).expected(0.01).unwrap();
+        assert!(counting.abs_diff(16_384) <= 1, "{counting}");
+        assert!(looks(&[(1024, 0.08), (2048, 0.04)]).expected(0.01).unwrap().abs_diff(8192) <= 1);
         // Noise that rises is counting's at least, one look alone too.
-        assert_eq!(looks(&[(1024, 0.04)]).expected(0.02), Some(4096));
+        assert!(looks(&[(1024, 0.04)]).expected(0.02).unwrap().abs_diff(4096) <= 1);
         assert!(looks(&[(1024, 0.04), (2048, 0.05)]).expected(0.025).unwrap() < 2048 * 6);
         assert_eq!(looks(&[(1024, f64::INFINITY)]).expected(0.01), None);
         assert_eq!(looks(&[(1024, 0.5)]).expected(1e-12), Some(u64::MAX));

@@ -4,8 +4,6 @@
 //! A photon that has been totally reflected so many times in a row ends there. A light guide keeps its light for many
 //! reflections and gives it back, so the number is lowered only where a probe finds that none comes back.
 
-use rayon::prelude::*;
-
 use crate::emitter::Emission;
 use crate::geometry::Whereabouts;
 use crate::sample::coordinates::{Chooser, Coordinates};
@@ -54,6 +52,7 @@ pub fn limit(scene: &Scene) -> u32 {
     *scene.trap_limit.get_or_init(|| if scene.media.has_bodies() { probed(scene) } else { FAR })
 }
 
+/// By one thread: a task that waited here for others of its pool could be handed one of these that waits for the same answer.
 fn probed(scene: &Scene) -> u32 {
     let points = IndependentPoints::new(PROBE_SEED, 0);
     let is_kept = |index: u64, limit: u32| {
@@ -68,13 +67,12 @@ fn probed(scene: &Scene) -> u32 {
     };
     let mut kept = Vec::new();
     for first in (0..PROBE).step_by(PART as usize) {
-        let indices = (first..first + PART).into_par_iter();
-        kept.extend(indices.filter(|index| is_kept(*index, NEAR)).collect::<Vec<_>>());
+        kept.extend((first..first + PART).filter(|index| is_kept(*index, NEAR)));
         if kept.len() >= FOLLOWED {
             break;
         }
     }
     kept.truncate(FOLLOWED);
-    let is_trap = !kept.is_empty() && kept.into_par_iter().all(|index| is_kept(index, FAR));
+    let is_trap = !kept.is_empty() && kept.into_iter().all(|index| is_kept(index, FAR));
     if is_trap { NEAR } else { FAR }
 }
