@@ -67,10 +67,11 @@ impl ForecastCheck {
         // Of an expectation no more than a power of two is known.
         let about = match photons.checked_next_power_of_two() {
             Some(_) if *photons <= PILOT => format!("fewer than 2^{} photons", PILOT.trailing_zeros()),
-            Some(power) => format!("2^{} photons", power.trailing_zeros()),
+            Some(power) => format!("about 2^{} photons", power.trailing_zeros()),
             _ => "more photons than a run has".into(),
         };
         let error = percent(*error);
-        format!("error      {error} % of {error_of}: about {about}, {} here\n", duration(*seconds))
+        let time = if *seconds < 1.0 { "less than a second".into() } else { duration(*seconds) };
+        format!("error      {error} % of {error_of}: {about}, {time} here\n")
     }
 }
