@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -271,17 +271,25 @@ fn the_state_before_a_torn_one_is_gone_on_from_and_another_run_is_refused() {
     s.is_told("render same.toml -o of --quiet --resume", 0, &["goes on after 8 192 photons"]);
 }
 
-/// Whole runs of the seconds that a state takes, killed with SIGKILL at times spread evenly, gone on from until they end by
-/// themselves. `CAUSTIX_KILLS=100` for as many.
-fn killed(scene: &str, line: &str, lasts: Duration) {
+/// Whole runs, killed with SIGKILL and gone on from until they end by themselves: every other one at any moment, the others some
+/// time after they have kept a state. `CAUSTIX_KILLS=100` for as many.
+fn killed(scene: &str, line: &str) {
     let times: u32 = std::env::var("CAUSTIX_KILLS").map_or(2, |n| n.parse().unwrap());
     let s = Stranger::with(&[("scene.toml", scene)]);
+    let started = Instant::now();
     s.is_told(&format!("{line} -o whole"), 0, &[]);
+    let lasts = started.elapsed();
     let mut went_on = 0;
     for k in 1..=times {
         let start = || s.command(&format!("{line} -o out --resume")).stderr(Stdio::piped()).spawn().unwrap();
         let mut child = start();
-        std::thread::sleep(lasts.mul_f64((f64::from(k) * 0.618_034).fract()));
+        if k % 2 == 0 {
+            while !s.path("out/run.state").exists() && child.try_wait().unwrap().is_none() {
+                std::thread::sleep(Duration::from_millis(2));
+            }
+        }
+        let part = (f64::from(k) * 0.618_034).fract();
+        std::thread::sleep(lasts.mul_f64(if k % 2 == 0 { 0.2 * part } else { part }));
         child.kill().unwrap();
         child.wait().unwrap();
         let output = start().wait_with_output().unwrap();
@@ -291,25 +299,25 @@ fn killed(scene: &str, line: &str, lasts: Duration) {
         assert_same(&s, "out", "whole");
         fs::remove_dir_all(s.path("out")).unwrap();
     }
-    println!("{times} kills: {went_on} went on from a state");
-    assert!(went_on > 0, "no run got as far as a state");
+    println!("{times} kills of runs of {lasts:?}: {went_on} went on from a state");
+    assert!(went_on > 0, "no run of {lasts:?} got as far as a state");
 }
 
 #[test]
 fn killed_at_any_moment_a_run_goes_on_to_the_same_bytes() {
-    killed(ALL, "render scene.toml --quiet --photons 6000000", Duration::from_secs(5));
+    killed(ALL, "render scene.toml --quiet --photons 6000000 --threads 1");
 }
 
 #[test]
 fn killed_at_any_moment_a_picture_goes_on_to_the_same_bytes() {
     let scene = format!("{ALL}{CAMERA}");
-    killed(&scene, "render scene.toml --quiet --photons 2^20", Duration::from_secs(5));
+    killed(&scene, "render scene.toml --quiet --photons 2^22 --threads 1");
 }
 
 #[test]
 fn a_picture_of_splats_goes_on_after_its_replicates() {
     let scene = format!("{ALL}{CAMERA}").replace("photon_memory_mb = 1", "method = \"splat\"");
-    killed(&scene, "render scene.toml --quiet --photons 2^21", Duration::from_secs(5));
+    killed(&scene, "render scene.toml --quiet --photons 2^22 --threads 1");
 }
 
 #[test]

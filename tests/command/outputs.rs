@@ -127,7 +127,7 @@ fn check_json_has_the_keys_of_the_contract() {
     let (code, out, _) = s.types("check --json");
     let json: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((code, &json["ok"]), (0, &Value::Bool(true)));
-    assert_keys(&json, &contract, &["receivers"]);
+    assert_keys(&json, &contract, &["receivers", "forecast"]);
     assert_keys(&json["surfaces"][0], &["name", "triangles", "open_edges"], &["closed", "area_m2"]);
     assert_keys(&json["emitters"][0], &["name", "flux_emitted_lm"], &[]);
     // 128 x 128 cells of two triangles; the rim of an open sheet of 128 x 128 has 512 edges.
@@ -187,7 +187,7 @@ fn a_report_has_the_keys_of_the_contract_and_balances() {
         ],
     );
     assert_keys(&report["scene"], &["path", "sha256"], &["files"]);
-    assert_keys(&report["time"], &["trace_s", "total_s", "photons_per_s"], &[]);
+    assert_keys(&report["time"], &["trace_s", "total_s", "photons_per_s"], &["merit_per_s"]);
     let ledger = &report["ledger_lm"];
     assert_keys(ledger, &["emitted", "absorbed", "escaped", "killed"], &["standard_error"]);
     assert_keys(&report["dimension"], &["mean", "max"], &["histogram", "mean_by_purpose"]);
@@ -208,7 +208,7 @@ fn a_report_has_the_keys_of_the_contract_and_balances() {
             "minimum",
             "maximum",
         ],
-        &["expected_nrms", "files", "reason"],
+        &["expected_nrms", "files", "reason", "diagnosis"],
     );
     let sum = |v: &Value| v.as_object().unwrap().values().map(|x| x.as_f64().unwrap()).sum::<f64>();
     let lm = |key: &str| ledger[key].as_f64().unwrap();

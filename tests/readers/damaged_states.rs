@@ -16,6 +16,7 @@ const SCENE: &str = r#"
 [[emitter]]
 type = "isotropic"
 position = [0.0, 0.0, 1.0]
+flux_lm = 100
 [material.black]
 type = "absorber"
 [[surface]]
