@@ -1,6 +1,7 @@
 //! The command line, one file a subcommand. Results go to stdout, progress and messages to stderr.
 
 mod args;
+mod asked;
 mod deadline;
 mod far_field;
 mod forecast;

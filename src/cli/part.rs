@@ -21,7 +21,8 @@ use crate::run::{Goal, Plan, StoppedBy, choose_cells};
 use crate::scene::Scene;
 
 use super::args::{MAX_THREADS, whole};
-use super::long::{self, Asked, Job};
+use super::asked::Asked;
+use super::long::{self, Job};
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::start::{files_of, load, thread_pool};
 use super::written::{Told, say_found};
@@ -61,7 +62,6 @@ pub fn run(args: &RenderArgs, asked: &Asked<'_>, mut scene: Scene, part: [u32; 2
     let [k, of] = part;
     let name = format!("part-{k}.state");
     let state = args.output.join(&name);
-    asked.plan(None)?;
     catch_interrupts();
     let _folder =
         Folder::take_part(&args.output, &format!(".caustix-part-{k}.lock"), "a directory for the results")?;
@@ -119,19 +119,13 @@ fn check(scene: &Scene, plan: &Plan, saved: Option<&Saved>, [k, of]: [u32; 2]) -
         let found = format!("{of} parts of replicates of {} photons", plan.photons_per_replicate());
         return refuse(found, "at most as many parts as a replicate has photons");
     }
-    match saved.map(|saved| saved.head.part_of) {
-        Some(part_of) if part_of != Some([k, of]) => {
-            let found = part_of.map_or("a whole run".into(), |[k, of]| format!("part {k} of {of}"));
-            let error = refuse(format!("the state of {found}"), &format!("one of part {k} of {of}"));
-            error.map_err(|e| {
-                e.hint("another folder, or without --resume").in_file(saved.map_or("".as_ref(), Saved::path))
-            })
-        }
-        Some(_) => {
-            saved.map_or(Ok(()), |saved| saved.head.check_part(plan).map_err(|e| e.in_file(saved.path())))
-        }
-        None => Ok(()),
+    let Some(saved) = saved else { return Ok(()) };
+    if saved.head.part_of != Some([k, of]) {
+        let found = saved.head.part_of.map_or("a whole run".into(), |[k, of]| format!("part {k} of {of}"));
+        let error: Result<()> = refuse(format!("the state of {found}"), &format!("one of part {k} of {of}"));
+        return error.map_err(|e| e.hint("another folder, or without --resume").in_file(saved.path()));
     }
+    saved.head.check_part(plan).map_err(|e| e.in_file(saved.path()))
 }
 
 /// Runs `caustix merge`; the exit code.

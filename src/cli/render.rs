@@ -15,7 +15,8 @@ use crate::run::share::Post;
 use crate::run::{Plan, choose_cells};
 use crate::scene::Scene;
 
-use super::long::{self, Asked};
+use super::asked::Asked;
+use super::long;
 use super::progress::{INTERRUPTED, Progress, catch_interrupts};
 use super::start::{files_of, load, thread_pool};
 use super::written::{REPORT, Told, beside_earlier, say_found, seen_wholly, strictly};
@@ -36,16 +37,16 @@ pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
         Some(post) => ranks::check(args, scene, plan, post),
         None => Ok(()),
     };
-    check_shared(&scene, &asked.plan(None)?.0)?;
+    // Told before anything is made.
+    let (plan, _) = asked.plan(None)?;
+    check_shared(&scene, &plan)?;
     if let Some(part) = asked.part {
         return part::run(args, &asked, scene, part);
     }
     if let Some(map) = &args.map {
         catch_interrupts();
-        return seen_again(args, map, &scene, &asked.plan(None)?.0, started);
+        return seen_again(args, map, &scene, &plan, started);
     }
-    // Told before anything is made.
-    asked.plan(None)?;
     catch_interrupts();
     if let Some(post) = post {
         ranks::check_all_read(&scene, post)?;

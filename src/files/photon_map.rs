@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::excerpt::cut;
+use crate::math::digest::Hashing;
 use crate::picture::photon_map::{Frame, Photon, SavedMap};
 
 /// How a saved photon map begins.
@@ -51,16 +52,10 @@ pub fn write<const C: usize>(map: &SavedMap<C>, writer: &mut dyn Write) -> io::R
     let numbers = [map.frame.low().to_array(), map.frame.steps_m().to_array()].concat();
     head.extend([map.photon_lm].iter().chain(&numbers).flat_map(|x| x.to_le_bytes()));
     head.extend((map.photons.len() as u64).to_le_bytes());
-    let mut hash = Sha256::new();
-    let mut put = |bytes: &[u8]| {
-        hash.update(bytes);
-        writer.write_all(bytes)
-    };
-    put(&head)?;
-    for some in map.photons.chunks(4096) {
-        put(&some.iter().flat_map(Photon::bytes).collect::<Vec<u8>>())?;
-    }
-    writer.write_all(hash.finalize().as_slice())
+    let mut out = Hashing::new(writer);
+    out.write_all(&head)?;
+    Photon::write_all(&map.photons, &mut out)?;
+    out.seal()
 }
 
 /// Reads the file, of the scene with this hash.

@@ -1,6 +1,6 @@
 //! SHA-256: what tells whether a scene, a file or kept photons are the same.
 
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 
 use sha2::{Digest, Sha256};
 
@@ -9,22 +9,52 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
-/// Length and SHA-256 of all that can be read, block by block.
+/// Length and SHA-256 of all that can be read.
 ///
 /// # Errors
 /// Those of reading.
 pub fn sha256_of(source: &mut impl Read) -> io::Result<(u64, String)> {
-    let (mut hash, mut length, mut block) = (Sha256::new(), 0u64, vec![0u8; 1 << 16]);
-    loop {
-        match source.read(&mut block) {
-            Ok(0) => return Ok((length, hexadecimal(&hash.finalize()))),
-            Ok(read) => {
-                hash.update(&block[..read]);
-                length += read as u64;
-            }
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
+    let mut through = Hashing::new(io::sink());
+    let length = io::copy(source, &mut through)?;
+    Ok((length, hexadecimal(&through.digest())))
+}
+
+/// Hashes what is written through it.
+pub struct Hashing<W> {
+    inner: W,
+    hash: Sha256,
+}
+
+impl<W: Write> Hashing<W> {
+    /// Nothing yet, on its way to `inner`.
+    pub fn new(inner: W) -> Self {
+        Self { inner, hash: Sha256::new() }
+    }
+
+    /// The SHA-256 of all that was written.
+    pub fn digest(self) -> [u8; 32] {
+        self.hash.finalize().into()
+    }
+
+    /// Writes the SHA-256 of all before it.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn seal(self) -> io::Result<()> {
+        let Self { mut inner, hash } = self;
+        inner.write_all(hash.finalize().as_slice())
+    }
+}
+
+impl<W: Write> Write for Hashing<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.hash.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
     }
 }
 

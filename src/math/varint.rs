@@ -49,6 +49,23 @@ pub fn take(from: &mut dyn Read) -> io::Result<u64> {
     Err(damaged("a number of more than 64 bits"))
 }
 
+/// Writes numbers of 128 bits, the lower half first.
+///
+/// # Errors
+/// Those of the writer.
+pub fn put_wide(out: &mut dyn Write, numbers: impl IntoIterator<Item = u128>) -> io::Result<()> {
+    put(out, numbers.into_iter().flat_map(|number| [number as u64, (number >> 64) as u64]))
+}
+
+/// Reads a number of 128 bits.
+///
+/// # Errors
+/// As [`take`].
+pub fn take_wide(from: &mut dyn Read) -> io::Result<u128> {
+    let (low, high) = (take(from)?, take(from)?);
+    Ok(u128::from(high) << 64 | u128::from(low))
+}
+
 /// Writes floating-point numbers, to the bit.
 ///
 /// # Errors
@@ -108,6 +125,15 @@ mod tests {
         let mut from = &bytes[..];
         assert_eq!(numbers.map(|_| take(&mut from).unwrap()), numbers);
         assert!(take(&mut from).is_err());
+    }
+
+    #[test]
+    fn numbers_of_128_bits_come_back() {
+        let numbers = [0, u128::from(u64::MAX), 1 << 64, u128::MAX - 5];
+        let mut bytes = Vec::new();
+        put_wide(&mut bytes, numbers).unwrap();
+        let mut from = &bytes[..];
+        assert_eq!(numbers.map(|_| take_wide(&mut from).unwrap()), numbers);
     }
 
     #[test]

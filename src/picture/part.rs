@@ -6,7 +6,7 @@
 use std::io::{self, Read, Write};
 
 use crate::error::{Diagnostic, Kind, Result};
-use crate::math::varint::{damaged, expect, put, take_up_to};
+use crate::math::varint::{expect, put, take_up_to};
 use crate::run::Plan;
 use crate::run::together::{Together, Watched};
 use crate::scene::Scene;
@@ -130,28 +130,15 @@ impl<const C: usize> Photons<C> {
 
     fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         put(out, [C as u64, self.kept.len() as u64])?;
-        for some in self.kept.chunks(1 << 12) {
-            out.write_all(&some.iter().flat_map(Photon::bytes).collect::<Vec<u8>>())?;
-        }
-        Ok(())
+        Photon::write_all(&self.kept, out)
     }
 
     fn add_from(&mut self, scene: &Scene, from: &mut dyn Read) -> io::Result<()> {
         expect(from, C as u64, "channels")?;
         let room = self.most.saturating_sub(self.kept.len()) as u64;
-        let primitives = scene.geometry.primitive_count() as u64;
-        let mut bytes = vec![0; Photon::<C>::BYTES];
-        for _ in 0..take_up_to(
-            from,
-            room,
-            "photons, for which the camera has no memory: a larger photon_memory_mb",
-        )? {
-            from.read_exact(&mut bytes)?;
-            let photon = Photon::<C>::from_bytes(&bytes);
-            if u64::from(photon.primitive) >= primitives {
-                return Err(damaged("a photon on a surface that is not there"));
-            }
-            self.kept.push(photon);
+        let why = "photons, for which the camera has no memory: a larger photon_memory_mb";
+        for _ in 0..take_up_to(from, room, why)? {
+            self.kept.push(Photon::read(from, scene.geometry.primitive_count())?);
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::run::Outcome;
 use crate::scene::evaluation::Grid;
-use crate::scene::receiver::{Cells, DividedBy, Receiver};
+use crate::scene::receiver::{Cells, Receiver};
 
 use super::spot::{MapCells, SpotStatistics};
 use super::uniformity::Uniformity;
@@ -158,10 +158,7 @@ impl ReceiverStatistics {
             grid: receiver.grid.map(|grid| GridStatistics::new(outcome, index, &grid)),
             area_m2,
             cells,
-            cells_by_pilot: match (receiver.divided_by, receiver.cells) {
-                (DividedBy::Pilot, Cells::Grid { nu, nv }) => Some([nu, nv]),
-                _ => None,
-            },
+            cells_by_pilot: receiver.cells_by_pilot(),
             expected_nrms: (lit && outcome.replicates > 1).then(|| (variance / area_m2).sqrt() / mean_lx),
             illuminance_lx,
             standard_error_lx,

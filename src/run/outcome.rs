@@ -41,8 +41,10 @@ pub struct Outcome {
     pub photons: u64,
     /// Replicates that the sums stand for.
     pub replicates: u32,
-    /// Flux of one photon, lm.
+    /// Flux of one photon, lm: 0 before there is one.
     pub photon_lm: f64,
+    /// Flux of all emitters, lm.
+    flux_lm: f64,
     /// Where photons began and ended.
     pub ledger: Ledger,
     /// Photons absorbed by each surface, escaped, killed, trapped.
@@ -124,6 +126,7 @@ impl Outcome {
             photons: 0,
             replicates: 0,
             photon_lm: 0.0,
+            flux_lm: scene.emitters.flux_lm(),
             ledger: Ledger::new(scene.emitters.as_slice().len(), surfaces),
             accounts: Moments::new(surfaces + 3),
             cells: scene.receivers.iter().map(|r| Moments::new(r.cells.len())).collect(),
@@ -156,7 +159,7 @@ impl Outcome {
 
     fn add_accounts(&mut self, traced: &Traced, receivers: &Receivers<'_>) {
         let Traced { ledger, census, .. } = traced;
-        self.photons += ledger.total_emitted();
+        self.stand_for(self.photons + ledger.total_emitted());
         self.replicates += 1;
         self.ledger.merge(ledger);
         self.census.merge(census);
@@ -207,11 +210,17 @@ impl Outcome {
         }
     }
 
+    /// The sums stand for so many photons.
+    pub(super) fn stand_for(&mut self, photons: u64) {
+        self.photons = photons;
+        self.photon_lm = self.flux_lm / photons.max(1) as f64;
+    }
+
     /// The run is over: what it found, or that it found nothing.
     ///
     /// # Errors
     /// An interrupt before there was a result, for which it takes `fewest` photons.
-    pub(super) fn finished(mut self, scene: &Scene, fewest: u64) -> crate::error::Result<Self> {
+    pub(super) fn finished(self, fewest: u64) -> crate::error::Result<Self> {
         if self.photons == 0 {
             return Err(Diagnostic::new(
                 Kind::Interrupted,
@@ -219,7 +228,6 @@ impl Outcome {
                 "at least these for a result",
             ));
         }
-        self.photon_lm = scene.emitters.flux_lm() / self.photons as f64;
         Ok(self)
     }
 

@@ -37,7 +37,7 @@ impl Outcome {
     /// Those of the reader; sums of another run.
     pub(super) fn read(&mut self, scene: &Scene, from: &mut dyn Read) -> io::Result<()> {
         let most = self.plan.replicates();
-        self.photons = take(from)?;
+        self.stand_for(take(from)?);
         self.replicates = take_up_to(from, most.into(), "replicates")? as u32;
         let mut traced = Traced::new(scene);
         traced.add_from(from)?;

@@ -163,7 +163,7 @@ impl<'s> Course<'s> {
             asked: goal.relative(),
             error: goal.measured(self.run.scene(), &outcome),
         });
-        let mut outcome = outcome.finished(self.run.scene(), schedule.first() * replicates)?;
+        let mut outcome = outcome.finished(schedule.first() * replicates)?;
         outcome.trace_s = self.trace_s;
         Ok(outcome)
     }

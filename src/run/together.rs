@@ -225,7 +225,6 @@ impl<'s> Together<'s> {
     /// Takes what there is in the place of what an outcome held. All replicates have come equally far.
     pub(super) fn sum_up(&self, outcome: &mut Outcome) {
         outcome.replace(self.replicas.iter().map(|replica| (&replica.traced, &replica.receivers)));
-        outcome.photon_lm = self.scene.emitters.flux_lm() / outcome.photons.max(1) as f64;
     }
 
     /// Photons of each replicate on each receiver among those with an index below 2^k, by k.

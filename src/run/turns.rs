@@ -194,7 +194,7 @@ impl<'s> Turns<'s> {
     /// Interrupted before there was a result.
     pub fn finish(self) -> Result<Outcome> {
         let trace_s = self.trace_s();
-        let mut outcome = self.outcome.finished(self.scene, first_stage(&self.plan))?;
+        let mut outcome = self.outcome.finished(first_stage(&self.plan))?;
         outcome.trace_s = trace_s;
         Ok(outcome)
     }

@@ -316,6 +316,21 @@ impl Receiver {
         Self { cells, divided_by, areas_m2, ..self.clone() }
     }
 
+    /// Cells along u and v, where a pilot run chose them.
+    pub fn cells_by_pilot(&self) -> Option<[u32; 2]> {
+        match (self.divided_by, self.cells) {
+            (DividedBy::Pilot, Cells::Grid { nu, nv }) => Some([nu, nv]),
+            _ => None,
+        }
+    }
+
+    /// Takes cells that a pilot run chose, where a scene leaves them to it.
+    pub fn take_cells_of_pilot(&mut self, cells: [u32; 2]) {
+        if self.divided_by == DividedBy::Default {
+            *self = self.divided(cells, DividedBy::Pilot);
+        }
+    }
+
     /// Area of a cell, m2.
     #[inline]
     pub fn area_m2(&self, cell: usize) -> f64 {

@@ -134,7 +134,7 @@ impl Moments {
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         varint::put(out, [self.sum.len() as u64, u64::from(self.replicates)])?;
         varint::put(out, self.sum.iter().chain(&self.odd).copied())?;
-        varint::put(out, self.square.iter().flat_map(|square| [*square as u64, (square >> 64) as u64]))
+        varint::put_wide(out, self.square.iter().copied())
     }
 
     /// Takes sums that were written in the place of these.
@@ -148,8 +148,7 @@ impl Moments {
             *sum = varint::take(from)?;
         }
         for square in &mut self.square {
-            let (low, high) = (varint::take(from)?, varint::take(from)?);
-            *square = u128::from(high) << 64 | u128::from(low);
+            *square = varint::take_wide(from)?;
         }
         Ok(())
     }

@@ -47,7 +47,7 @@ impl SpotCount {
         let Self { cells, photons, first, second } = self;
         varint::put(out, [cells.len() as u64, *photons])?;
         varint::put(out, cells.iter().copied())?;
-        varint::put(out, first.iter().chain(second).flat_map(|sum| [*sum as u64, (sum >> 64) as u64]))
+        varint::put_wide(out, first.iter().chain(second).copied())
     }
 
     /// Reads one of a spot.
@@ -58,10 +58,7 @@ impl SpotCount {
         varint::expect(from, spot.cells() as u64, "fine cells")?;
         let photons = varint::take(from)?;
         let cells = (0..spot.cells()).map(|_| varint::take(from)).collect::<io::Result<_>>()?;
-        let mut wide = || -> io::Result<u128> {
-            let (low, high) = (varint::take(from)?, varint::take(from)?);
-            Ok(u128::from(high) << 64 | u128::from(low))
-        };
+        let mut wide = || varint::take_wide(from);
         Ok(Self { cells, photons, first: [wide()?, wide()?], second: [wide()?, wide()?] })
     }
 }
@@ -103,7 +100,7 @@ impl SpotTally {
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         self.cells.write(out)?;
         let SpotCount { first: [u, v], second: [uu, vv], .. } = self.counted();
-        varint::put(out, [u, v, uu, vv].into_iter().flat_map(|sum| [sum as u64, (sum >> 64) as u64]))
+        varint::put_wide(out, [u, v, uu, vv])
     }
 
     /// Adds what was written.
@@ -113,8 +110,7 @@ impl SpotTally {
     pub fn add_from(&self, from: &mut dyn Read) -> io::Result<()> {
         self.cells.add_from(from)?;
         for sum in &self.shards[0] {
-            let (low, high) = (varint::take(from)?, varint::take(from)?);
-            sum.add(u128::from(high) << 64 | u128::from(low));
+            sum.add(varint::take_wide(from)?);
         }
         Ok(())
     }

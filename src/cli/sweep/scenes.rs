@@ -17,7 +17,7 @@ use crate::lab::sweep::results::Sweep;
 use crate::report::numbers::grouped;
 use crate::run::{Plan, Settings, Variant, choose_cells};
 use crate::scene::Scene;
-use crate::scene::receiver::{Cells, DividedBy};
+use crate::scene::receiver::DividedBy;
 
 use super::SweepArgs;
 
@@ -77,9 +77,9 @@ impl<'a> Scenes<'a> {
         let file = self.source.read(&text).map_err(named)?;
         let run = file.run;
         let mut scene = file.build().map_err(named)?;
-        for receiver in scene.receivers.iter_mut().filter(|r| r.divided_by == DividedBy::Default) {
+        for receiver in &mut scene.receivers {
             if let Some((_, cells)) = self.cells.iter().find(|(name, _)| *name == receiver.name) {
-                *receiver = receiver.divided(*cells, DividedBy::Pilot);
+                receiver.take_cells_of_pilot(*cells);
             }
         }
         Ok((scene, run))
@@ -113,12 +113,8 @@ impl<'a> Scenes<'a> {
         let progress = Progress::new(self.args.quiet, "choosing cells", 0);
         choose_cells(&mut scene, &self.plan(&run)?, &INTERRUPTED)?;
         progress.clear();
-        let chosen = scene.receivers.iter().filter(|r| r.divided_by == DividedBy::Pilot);
-        let of = |cells| match cells {
-            Cells::Grid { nu, nv } => Some([nu, nv]),
-            Cells::Faces { .. } => None,
-        };
-        self.cells = chosen.filter_map(|r| Some((r.name.clone(), of(r.cells)?))).collect();
+        let chosen = scene.receivers.iter().filter_map(|r| Some((r.name.clone(), r.cells_by_pilot()?)));
+        self.cells = chosen.collect();
         Ok(())
     }
 

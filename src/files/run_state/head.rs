@@ -15,7 +15,7 @@ use crate::run::turns::Turns;
 use crate::run::{Algorithm, ErrorGoal, ErrorOf, Plan, Settings};
 use crate::scene::Scene;
 use crate::scene::camera::Method;
-use crate::scene::receiver::{Cells, DividedBy};
+use crate::scene::receiver::Receiver;
 
 /// What a run is of: what must be the same for a state to be gone on from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -108,10 +108,6 @@ impl Head {
         (done, traced): (u64, u64),
         units_of_a_photon: u64,
     ) -> Self {
-        let chosen = scene.receivers.iter().map(|receiver| match (receiver.divided_by, receiver.cells) {
-            (DividedBy::Pilot, Cells::Grid { nu, nv }) => Some([nu, nv]),
-            _ => None,
-        });
         Self {
             caustix: env!("CARGO_PKG_VERSION").to_owned(),
             scene: scene.identity.name.clone(),
@@ -125,7 +121,7 @@ impl Head {
             part_of: None,
             done,
             traced,
-            cells: chosen.collect(),
+            cells: scene.receivers.iter().map(Receiver::cells_by_pilot).collect(),
             units_of_a_photon,
             goal: None,
             looks: Looks::default(),
@@ -231,9 +227,7 @@ impl Head {
     /// Divides the receivers of a scene as the run's pilot did.
     pub fn divide(&self, scene: &mut Scene) {
         for (receiver, cells) in scene.receivers.iter_mut().zip(&self.cells) {
-            if let (DividedBy::Default, Some(cells)) = (receiver.divided_by, cells) {
-                *receiver = receiver.divided(*cells, DividedBy::Pilot);
-            }
+            cells.iter().for_each(|cells| receiver.take_cells_of_pilot(*cells));
         }
     }
 

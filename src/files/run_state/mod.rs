@@ -12,10 +12,9 @@ use std::fs::{self, File};
 use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
 use crate::error::{Diagnostic, Kind, Result};
 use crate::files::atomic::write_atomically;
+use crate::math::digest::Hashing;
 use crate::math::varint::damaged;
 use crate::picture::part::AnyPhotons;
 use crate::run::Plan;
@@ -45,15 +44,14 @@ pub fn write(path: &Path, head: &Head, body: impl FnOnce(&mut dyn Write) -> io::
     // Made whole under a name of its own first, so that a full disk costs neither of the two that are there.
     let newest = beside(path, "new");
     write_atomically(&newest, |file| {
-        let mut out = Hashing { inner: file, hash: Sha256::new() };
+        let mut out = Hashing::new(file);
         let json = serde_json::to_vec(head)?;
         out.write_all(MAGIC)?;
         out.write_all(&VERSION.to_le_bytes())?;
         out.write_all(&(json.len() as u32).to_le_bytes())?;
         out.write_all(&json)?;
         body(&mut out)?;
-        let Hashing { inner, hash } = out;
-        inner.write_all(hash.finalize().as_slice())
+        out.seal()
     })?;
     let renamed = |from: &Path, to: &Path| {
         fs::rename(from, to).map_err(|e| {
@@ -158,13 +156,12 @@ impl Saved {
         }
         let mut json = vec![0; length as usize];
         file.read_exact(&mut json).map_err(|e| io(&e))?;
-        let mut through = Hashing { inner: io::sink(), hash: Sha256::new() };
-        through.hash.update(start);
-        through.hash.update(&json);
+        let mut through = Hashing::new(io::sink());
+        through.write_all(&[&start[..], &json].concat()).map_err(|e| io(&e))?;
         io::copy(&mut (&mut file).take(end - body), &mut through).map_err(|e| io(&e))?;
         let mut digest = [0; DIGEST as usize];
         file.read_exact(&mut digest).map_err(|e| io(&e))?;
-        if through.hash.finalize().as_slice() != digest {
+        if through.digest() != digest {
             return Err(torn());
         }
         let head = serde_json::from_slice(&json).map_err(|e| {
@@ -238,23 +235,5 @@ impl Saved {
         }
         course.trace_s = self.head.trace_s();
         Ok(course)
-    }
-}
-
-/// Hashes what goes through.
-struct Hashing<W> {
-    inner: W,
-    hash: Sha256,
-}
-
-impl<W: Write> Write for Hashing<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.hash.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.inner.flush()
     }
 }

@@ -12,7 +12,7 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use crate::error::Result;
-use crate::math::varint::{damaged, expect, put, put_reals, take, take_real, take_up_to};
+use crate::math::varint::{expect, put, put_reals, take, take_real, take_up_to};
 use crate::picture::camera::Pass;
 use crate::picture::photon_map::{Channels, Kept, Photon, PhotonMap, PhotonStore, SavedMap};
 use crate::picture::summary::{Cost, PictureSummary};
@@ -280,7 +280,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         out: &mut dyn Write,
         held_of: &Range<u32>,
         in_pass: Option<usize>,
-        photons: impl Iterator<Item = impl AsRef<[Photon<C>]>> + 'p,
+        mut photons: impl Iterator<Item = impl AsRef<[Photon<C>]>> + 'p,
     ) -> io::Result<()> {
         let Budget { held, traced, kept, keep, .. } = self.budget;
         put(out, [C as u64, held as u64, traced, kept, u64::from(keep)])?;
@@ -288,12 +288,7 @@ impl<'a, const C: usize> Collector<'a, C> {
         put(out, [self.passes.into(), self.open.into(), in_pass.map_or(0, |tiles| tiles as u64)])?;
         put_reals(out, [self.camera_s])?;
         self.eye.write(out)?;
-        for some in photons {
-            for some in some.as_ref().chunks(1 << 12) {
-                out.write_all(&some.iter().flat_map(Photon::bytes).collect::<Vec<u8>>())?;
-            }
-        }
-        Ok(())
+        photons.try_for_each(|some| Photon::write_all(some.as_ref(), out))
     }
 
     /// Goes on from what was written, of the same scene, camera and plan.
@@ -317,15 +312,9 @@ impl<'a, const C: usize> Collector<'a, C> {
         self.in_pass = Some(tiles).filter(|tiles| *tiles > 0);
         self.camera_s = take_real(from)?;
         self.eye.read(from)?;
-        let primitives = self.scene.geometry.primitive_count() as u64;
-        let mut bytes = vec![0; Photon::<C>::BYTES];
         self.held = [vec![Vec::new()], vec![Vec::new()]];
         for _ in 0..held {
-            from.read_exact(&mut bytes)?;
-            let photon = Photon::<C>::from_bytes(&bytes);
-            if u64::from(photon.primitive) >= primitives {
-                return Err(damaged("a photon on a surface that is not there"));
-            }
+            let photon = Photon::read(from, self.scene.geometry.primitive_count())?;
             self.held[usize::from(photon.is_scattered())][0].push(photon);
         }
         self.budget.held = held as usize;

@@ -1,6 +1,10 @@
 //! One kept photon, packed.
 
+use std::io::{self, Read, Write};
+
 use glam::DVec3;
+
+use crate::math::varint::damaged;
 
 /// A photon that arrived: 24 bytes and 4 a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +31,30 @@ impl<const C: usize> Photon<C> {
         let [x, y, z] = self.cell;
         let words = [x, y, z, self.direction, self.primitive, self.tag].into_iter();
         words.chain(self.weight.map(f32::to_bits)).flat_map(u32::to_le_bytes)
+    }
+
+    /// Writes photons.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_all(photons: &[Self], out: &mut dyn Write) -> io::Result<()> {
+        let mut some = photons.chunks(1 << 12);
+        some.try_for_each(|some| out.write_all(&some.iter().flat_map(Self::bytes).collect::<Vec<u8>>()))
+    }
+
+    /// Reads a photon on one of so many primitives.
+    ///
+    /// # Errors
+    /// Those of the reader; a photon on another primitive.
+    pub fn read(from: &mut dyn Read, primitives: usize) -> io::Result<Self> {
+        let mut bytes = [0; Photon::<3>::BYTES];
+        let bytes = &mut bytes[..Self::BYTES];
+        from.read_exact(bytes)?;
+        let photon = Self::from_bytes(bytes);
+        if photon.primitive as usize >= primitives {
+            return Err(damaged("a photon on a surface that is not there"));
+        }
+        Ok(photon)
     }
 
     /// The photon of so many bytes; nonsense of another number of them.
