@@ -69,9 +69,7 @@ pub(super) fn run(args: &RenderArgs, post: Option<&dyn Post>) -> Done {
             progress.clear();
         }
     }
-    if let Some(error) = &goal.error {
-        error.check(&scene, &plan)?;
-    }
+    goal.check(&scene, &plan)?;
     check_shared(&scene, &plan)?;
     let job = long::Job { scene: &scene, plan, goal, state: &state, part_of: None, quiet: args.quiet };
     let is_kept = scene.camera.is_none() && is_together(&scene, &plan);

@@ -4,28 +4,43 @@ use crate::error::{Diagnostic, Kind, Result};
 use crate::estimate::replicates::standard_error_of_cell;
 use crate::scene::Scene;
 
-use super::goal::{ErrorGoal, ErrorOf};
+use super::goal::{ErrorGoal, ErrorOf, Goal};
 use super::kept::is_together;
 use super::outcome::{Estimate, Outcome};
 use super::plan::Plan;
 
-impl ErrorGoal {
-    /// That a scene and a plan can reach an error.
+impl Goal {
+    /// That a scene and a plan can end before all photons are traced.
     ///
     /// # Errors
-    /// One replicate, points made for their number, maps too large for all replicates at a time; nothing to have the error of.
+    /// Points made for their number, maps too large for all replicates at a time: no part of them is a sample. Of an error: one
+    /// replicate; nothing to have the error of.
     pub fn check(&self, scene: &Scene, plan: &Plan) -> Result<()> {
+        let what = match (&self.error, self.until) {
+            (None, None) => return Ok(()),
+            (Some(_), _) => "an error to be reached",
+            (None, Some(_)) => "a time to be kept",
+        };
+        if let Some(error) = &self.error {
+            error.check(scene, plan)?;
+        }
+        if is_together(scene, plan) {
+            return Ok(());
+        }
+        let found = format!("{what} by replicates that are traced one after another");
+        let required = "replicates together: fewer cells or replicates, a sequence that is not made for its number of points";
+        Err(Diagnostic::new(Kind::Range, found, required))
+    }
+}
+
+impl ErrorGoal {
+    /// That replicates together can reach it.
+    pub(super) fn check(&self, scene: &Scene, plan: &Plan) -> Result<()> {
         let fail = |found: String, required: &str| Err(Diagnostic::new(Kind::Range, found, required));
         let sequence = plan.algorithm().sequence;
         if plan.replicates() < 2 {
             let found = format!("an error to be reached by one replicate of \"{}\"", sequence.name());
             return fail(found, "several replicates: the points of one set have no spread");
-        }
-        if !is_together(scene, plan) {
-            return fail(
-                "an error to be reached by replicates that are traced one after another".into(),
-                "replicates together: fewer cells or replicates, a sequence that is not made for its number of points",
-            );
         }
         let of_receivers = !scene.receivers.is_empty();
         let of_far_fields = self.of() == ErrorOf::Flux && !scene.far_fields.is_empty();

@@ -43,7 +43,7 @@ pub fn trace(
 /// The same until an error is reached or a time is over, whichever comes first, with the plan's photons as the most.
 ///
 /// # Errors
-/// Those of [`trace`] and of [`ErrorGoal::check`].
+/// Those of [`trace`] and of [`Goal::check`].
 pub fn trace_until(
     scene: &Scene,
     plan: &Plan,
@@ -51,9 +51,7 @@ pub fn trace_until(
     interrupt: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    if let Some(error) = &goal.error {
-        error.check(scene, plan)?;
-    }
+    goal.check(scene, plan)?;
     let watched = Watched { interrupt, progress };
     Course::new(Together::new(scene, plan)?).run(goal, watched, &mut Unkept)
 }

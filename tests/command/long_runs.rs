@@ -414,6 +414,11 @@ fn options_that_do_not_go_together_are_told() {
         ("scene.toml --error 1 --replicates 1", 1, &["one replicate", "several replicates"]),
         ("scene.toml --error 1 --sequence sobol", 1, &["one replicate of \"sobol\""]),
         ("scene.toml --error 1 --sequence jittered", 1, &["one after another"]),
+        (
+            "scene.toml --time 1 --sequence jittered",
+            1,
+            &["a time to be kept by replicates that are traced one after another"],
+        ),
         ("scene.toml --time 0", 1, &["--time 0", "10min"]),
         ("scene.toml --time soon", 1, &["--time soon"]),
         ("scene.toml --part 5/4", 1, &["--part 5/4", "like 3/16"]),
